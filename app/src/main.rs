@@ -1,0 +1,2 @@
+//! The `purlwise` program.
+fn main() {}

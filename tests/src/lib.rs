@@ -1,0 +1,1 @@
+//! Cross-crate suites live beside this file; see each test.
