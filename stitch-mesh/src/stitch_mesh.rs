@@ -12,7 +12,7 @@
 
 use crate::ids::{FaceId, HalfEdgeId};
 use crate::label::Row;
-use crate::mesh::PolygonMesh;
+use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
 
 /// A mesh of stitches. See the module.
@@ -23,8 +23,11 @@ pub struct StitchMesh {
 }
 
 /// Why a mesh with stitches is not a stitch mesh, or a stitch cannot be set.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StitchMeshError {
+    /// The faces do not make a mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// The numbers of faces and stitches differ.
     #[error("{faces} faces, but {stitches} stitches")]
     Count {
@@ -63,6 +66,14 @@ pub enum StitchMeshError {
         /// The stitch.
         stitch: String,
     },
+    /// A stitch that pulls its yarn through loops, where there are none below.
+    #[error("face {face} cannot be {stitch}: there is no loop below it; only yarn-overs begin from nothing")]
+    NothingBelow {
+        /// The face.
+        face: FaceId,
+        /// The stitch.
+        stitch: String,
+    },
 }
 
 impl StitchMesh {
@@ -89,11 +100,19 @@ impl StitchMesh {
         Ok(stitch_mesh)
     }
 
+    /// Fit of a stitch in its face: as many edges, old loops to be pulled through, and nothing dropped.
     fn check_fit(&self, face: FaceId, stitch: &Stitch) -> Result<(), StitchMeshError> {
         let edges = self.mesh.face_half_edges(face).len() - 2;
         let (bottoms, tops) = (stitch.bottoms(), stitch.tops());
         if edges != bottoms + tops {
             return Err(StitchMeshError::Arity { face, edges, stitch: stitch.to_string(), bottoms, tops });
+        }
+        let below = self.mesh.face_half_edges(face).take(bottoms);
+        if !stitch.holds() && below.into_iter().any(|h| self.mesh.twin(h).is_some()) {
+            return Err(StitchMeshError::HoldsNothing { face, stitch: stitch.to_string() });
+        }
+        if bottoms == 0 && stitch.holds() {
+            return Err(StitchMeshError::NothingBelow { face, stitch: stitch.to_string() });
         }
         Ok(())
     }
@@ -124,9 +143,7 @@ impl StitchMesh {
             let (bottoms, tops) = (stitch.bottoms(), stitch.tops());
             return Err(StitchMeshError::Arity { face, edges, stitch: stitch.to_string(), bottoms, tops });
         }
-        if !stitch.holds() && self.bottoms(face).any(|h| self.mesh.twin(h).is_some()) {
-            return Err(StitchMeshError::HoldsNothing { face, stitch: stitch.to_string() });
-        }
+        self.check_fit(face, &stitch)?;
         self.stitches[face.index()] = stitch;
         Ok(())
     }

@@ -109,7 +109,7 @@ impl EdgeCounts {
             return Err(TessellateError::StitchSize(size.width.min(size.height)));
         }
         let mesh = labelled.mesh();
-        let count = |length: f64, unit: f64| ((length / unit).round().max(1.0)).min(1e6) as u32;
+        let count = |length: f64, unit: f64| (length / unit).round().clamp(1.0, 1e6) as u32;
         let mut counts: Vec<u32> = mesh.edges().map(|e| count(mesh.edge_length(e), size.width)).collect();
         for row in labelled.rows() {
             let wales: Vec<Wales> = row.faces.iter().filter_map(|f| labelled.wales(*f)).collect();
@@ -360,7 +360,7 @@ fn shares(edges: usize, stitches: usize, side: Side) -> Vec<usize> {
         Side::Left => i,
         Side::Right => stitches - 1 - i,
         Side::Both { first_left } => {
-            if (i % 2 == 0) == first_left {
+            if i.is_multiple_of(2) == first_left {
                 i / 2
             } else {
                 stitches - 1 - i / 2
