@@ -103,8 +103,8 @@ impl Renderer {
         let mut pass = begin_pass(encoder, "scene", Some(color), Some((&viewport.depth, 0.0)));
         pass.set_bind_group(0, &viewport.lit_frame, &[]);
         self.yarn.draw(gpu, &mut pass, &scene.yarn, camera.scale_at(size));
-        self.surfaces.draw(&mut pass, &scene.faces);
-        self.surfaces.draw(&mut pass, &scene.solids);
+        self.surfaces.draw_faces(&mut pass, &scene.faces);
+        self.surfaces.draw_solids(&mut pass, &scene.solids);
         pass.set_bind_group(0, &viewport.plain_frame, &[]);
         self.lines.draw(&mut pass, &scene.lines);
         drop(pass);

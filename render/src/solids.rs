@@ -12,8 +12,10 @@ const COLOR: [f32; 3] = [0.45, 0.45, 0.46];
 const AROUND: usize = 64;
 /// Rings from a pole to the equator.
 const RINGS: usize = 16;
-/// Radius of the disc that stands for the endless ground, in metres: wide beside a garment.
-const GROUND_RADIUS: f32 = 8.0;
+/// The ground, lit, is about as light as the background, which it fades into.
+const GROUND_COLOR: [f32; 3] = [0.62, 0.605, 0.58];
+/// Radii [m] of the disc that stands for the ground, and its opacity there.
+const GROUND_RINGS: [(f32, f32); 4] = [(0.0, 1.0), (0.6, 1.0), (1.2, 0.4), (2.0, 0.0)];
 
 /// A body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +34,7 @@ pub enum Solid {
         /// Its radius [m].
         radius: f32,
     },
-    /// The ground, level and endless.
+    /// The ground under the origin, level; it fades into the background some way out, and is not seen from below.
     Ground {
         /// Its height y [m].
         height: f32,
@@ -53,6 +55,7 @@ pub(crate) struct Vertex {
     pub position: Vec3,
     pub normal: Vec3,
     pub color: [f32; 3],
+    pub opacity: f32,
 }
 
 impl Solids {
@@ -83,7 +86,7 @@ impl Solids {
 }
 
 fn vertex(position: Vec3, normal: Vec3) -> Vertex {
-    Vertex { position, normal, color: COLOR }
+    Vertex { position, normal, color: COLOR, opacity: 1.0 }
 }
 
 /// Rings of constant latitude about the axis from one end to the other; the cylinder is the strip between the two
@@ -111,12 +114,17 @@ fn capsule([a, b]: [Vec3; 2], radius: f32, out: &mut Vec<Vertex>) {
 }
 
 fn ground(height: f32, out: &mut Vec<Vertex>) {
-    let at = |j: usize| {
+    let at = |(radius, opacity): (f32, f32), j: usize| {
         let (sin, cos) = (TAU * j as f32 / AROUND as f32).sin_cos();
-        vertex(Vec3::new(GROUND_RADIUS * sin, height, GROUND_RADIUS * cos), Vec3::Y)
+        let position = Vec3::new(radius * sin, height, radius * cos);
+        Vertex { position, normal: Vec3::Y, color: GROUND_COLOR, opacity }
     };
-    for j in 0..AROUND {
-        out.extend([vertex(Vec3::Y * height, Vec3::Y), at(j), at(j + 1)]);
+    for rings in GROUND_RINGS.windows(2) {
+        for j in 0..AROUND {
+            let [p, q] = [at(rings[0], j), at(rings[0], j + 1)];
+            let [r, s] = [at(rings[1], j + 1), at(rings[1], j)];
+            out.extend([p, s, r, p, r, q]);
+        }
     }
 }
 
@@ -139,5 +147,15 @@ mod tests {
                 assert!(face.dot(corner.normal) > -1e-7);
             }
         }
+    }
+
+    #[test]
+    fn the_ground_faces_up() {
+        let solids = Solids { solids: vec![Solid::Ground { height: -1.0 }] };
+        for triangle in solids.vertices().chunks(3) {
+            let [a, b, c] = [0, 1, 2].map(|i| triangle[i].position);
+            assert!((b - a).cross(c - a).y >= 0.0 && a.y == -1.0);
+        }
+        assert_eq!(solids.bounds(), None);
     }
 }

@@ -10,8 +10,8 @@ use crate::scene::GrowingBuffer;
 use crate::solids::{Solids, Vertex};
 use crate::{Gpu, RenderError};
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3];
+const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
 
 /// Triangles on the GPU.
 #[derive(Debug)]
@@ -32,7 +32,7 @@ impl SurfaceMesh {
         for (index, polygon) in faces.polygons.iter().enumerate() {
             let normal = faces.triangles(index).map(|[a, b, c]| (b - a).cross(c - a)).sum::<Vec3>();
             let normal = normal.try_normalize().unwrap_or(Vec3::Z);
-            let corner = |position| Vertex { position, normal, color: polygon.color };
+            let corner = |position| Vertex { position, normal, color: polygon.color, opacity: 1.0 };
             vertices.extend(faces.triangles(index).flatten().map(corner));
         }
         self.set(gpu, &vertices)
@@ -52,7 +52,8 @@ impl SurfaceMesh {
 /// The pipelines that draw them.
 #[derive(Debug)]
 pub(crate) struct SurfacePipelines {
-    lit: wgpu::RenderPipeline,
+    faces: wgpu::RenderPipeline,
+    solids: wgpu::RenderPipeline,
     shadow: wgpu::RenderPipeline,
 }
 
@@ -64,8 +65,8 @@ impl SurfacePipelines {
         samples: u32,
     ) -> Self {
         let module = shader(device, "surface", &[light::WGSL, include_str!("surface.wgsl")]);
-        let lit = Pipeline {
-            label: "surface",
+        let faces = Pipeline {
+            label: "faces",
             module: &module,
             vertex: "surface_vertex",
             fragment: Some("surface_fragment"),
@@ -81,6 +82,9 @@ impl SurfacePipelines {
             depth: Some(Greater),
             samples,
         };
+        let vertices = || faces.vertices.clone();
+        let solids =
+            Pipeline { label: "solids", vertices: vertices(), cull: Some(wgpu::Face::Back), ..faces };
         let shadow = Pipeline {
             label: "surface shadow",
             fragment: None,
@@ -88,14 +92,20 @@ impl SurfacePipelines {
             target: None,
             depth: Some(Less),
             samples: 1,
-            vertices: lit.vertices.clone(),
-            ..lit
+            vertices: vertices(),
+            ..faces
         };
-        Self { shadow: shadow.build(device), lit: lit.build(device) }
+        Self { solids: solids.build(device), shadow: shadow.build(device), faces: faces.build(device) }
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
-        Self::draw_with(&self.lit, pass, mesh);
+    /// Draws polygons from both sides.
+    pub fn draw_faces(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
+        Self::draw_with(&self.faces, pass, mesh);
+    }
+
+    /// Draws bodies from outside.
+    pub fn draw_solids(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
+        Self::draw_with(&self.solids, pass, mesh);
     }
 
     pub fn draw_shadow(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {

@@ -146,7 +146,7 @@ impl YarnPipelines {
             label: "yarn tubes",
             module: &module,
             vertex: "tube_vertex",
-            fragment: Some("yarn_fragment"),
+            fragment: Some("tube_fragment"),
             layouts: &[lit_frame, &layout],
             vertices: None,
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -155,8 +155,14 @@ impl YarnPipelines {
             depth: Some(Greater),
             samples,
         };
-        let ribbon =
-            Pipeline { label: "yarn ribbons", vertex: "ribbon_vertex", cull: None, vertices: None, ..tube };
+        let ribbon = Pipeline {
+            label: "yarn ribbons",
+            vertex: "ribbon_vertex",
+            fragment: Some("ribbon_fragment"),
+            cull: None,
+            vertices: None,
+            ..tube
+        };
         let shadow = Pipeline {
             label: "yarn shadow",
             vertex: "shadow_vertex",

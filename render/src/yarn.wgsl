@@ -3,6 +3,8 @@
 // SAMPLES, SIDES, PLIES, PITCH and END are written in front of this file by yarn.rs.
 
 const TAU = 6.283185307;
+// Tubes are this much wider than the yarn: there only some fibres stand off it.
+const HALO = 1.06;
 
 struct ControlPoint {
     position: vec3f,
@@ -66,13 +68,13 @@ fn direction(tangent: vec3f, otherwise: vec3f) -> vec3f {
 struct Corner {
     @builtin(position) clip: vec4f,
     @location(0) position: vec3f,
-    // Of a tube: the normal. Of a ribbon: the part of the normal across, while `facing` is the direction to the eye.
+    // Of a tube: the normal. Of a ribbon: the part of the normal across the line of sight.
     @location(1) normal: vec3f,
-    @location(2) facing: vec3f,
-    @location(3) tangent: vec3f,
+    // Of a tube: the tangent. Of a ribbon: the normal of its middle.
+    @location(2) axis: vec3f,
     // Length in diameters, and angle about the yarn.
-    @location(4) around: vec2f,
-    @location(5) color: vec3f,
+    @location(3) around: vec2f,
+    @location(4) color: vec3f,
 }
 
 @vertex
@@ -80,9 +82,9 @@ fn tube_vertex(@builtin(instance_index) instance: u32, @builtin(vertex_index) ve
     let s = station(instance, vertex);
     let angle = TAU * f32(vertex % (SIDES + 1u)) / f32(SIDES);
     let normal = s.normal * cos(angle) + cross(s.tangent, s.normal) * sin(angle);
-    let position = s.center + normal * s.radius;
+    let position = s.center + normal * s.radius * HALO;
     let clip = frame.view_projection * vec4f(position, 1.0);
-    return Corner(clip, position, normal, vec3f(0.0), s.tangent, vec2f(s.arc, angle), s.color);
+    return Corner(clip, position, normal, s.tangent, vec2f(s.arc, angle), s.color);
 }
 
 // The two edges of a ribbon: across the line of sight and the yarn.
@@ -100,7 +102,7 @@ fn ribbon_vertex(@builtin(instance_index) instance: u32, @builtin(vertex_index) 
     let clip = frame.view_projection * vec4f(position, 1.0);
     let eye = towards_eye(s.center);
     let facing = normalize(eye - s.tangent * dot(eye, s.tangent) * 0.999);
-    return Corner(clip, position, side, facing, s.tangent, vec2f(s.arc, 0.0), s.color);
+    return Corner(clip, position, side, facing, vec2f(s.arc, 0.0), s.color);
 }
 
 // Shadows are cast by ribbons through the centre line. The lit half of the yarn lies in front of them, so yarn does not
@@ -131,52 +133,70 @@ fn noise(p: vec2f) -> f32 {
 // Relief and shade of the plies and fibres at a point of the surface.
 struct Wool {
     normal: vec3f,
+    // Factor of the light.
     shade: f32,
+    // 0…1: which places a fibre covers, for the halo.
+    cover: f32,
 }
 
 fn wool(normal: vec3f, tangent: vec3f, around: vec2f) -> Wool {
     let phase = PLIES * (around.y / TAU + around.x / PITCH);
     let blur = fwidth(phase);
     if blur > 0.6 {
-        return Wool(normal, 1.0);
+        return Wool(normal, 1.0, 1.0);
     }
     // Each ply is a little cylinder: its normal leans from −1 to 1 across it, along the gradient of the phase.
     let gradient = cross(tangent, normal) + tangent * (0.5 * TAU / PITCH);
     let lean = 2.0 * fract(phase) - 1.0;
     let clear = 1.0 - smoothstep(0.12, 0.6, blur);
-    let groove = smoothstep(0.55, 1.0, abs(lean)) * clear;
+    let groove = smoothstep(0.45, 1.0, abs(lean)) * clear;
 
-    // Fibres run along the plies, so noise that is long along them.
-    let fine = vec2f(phase * 7.0, around.x * 1.3);
-    let fibre_clear = 1.0 - smoothstep(0.03, 0.14, blur);
-    var fibres = 0.5;
+    // Fibres run along the plies, a little across them, so noise that is long that way.
+    var fibres = 0.0;
     var slope = 0.0;
-    if fibre_clear > 0.0 {
-        let coarse = noise(fine);
-        let thin = noise(fine * vec2f(2.7, 1.9) + vec2f(31.7, 17.3));
-        fibres = mix(0.5, 0.6 * coarse + 0.4 * thin, fibre_clear);
-        slope = (noise(fine + vec2f(0.35, 0.0)) - coarse) * fibre_clear;
+    var cover = 1.0;
+    let locks_clear = 1.0 - smoothstep(0.03, 0.12, blur);
+    if locks_clear > 0.0 {
+        let locks = vec2f(phase * 8.0 + around.x * 0.9, around.x * 1.1);
+        let hairs = vec2f(phase * 27.0 - around.x * 2.3, around.x * 2.1 + 17.3);
+        let hairs_clear = 1.0 - smoothstep(0.012, 0.045, blur);
+        let lock = noise(locks);
+        let hair = noise(hairs);
+        fibres = (0.5 * (lock - 0.5) + 0.75 * (hair - 0.5) * hairs_clear) * locks_clear;
+        let lock_slope = noise(locks + vec2f(0.4, 0.0)) - lock;
+        let hair_slope = noise(hairs + vec2f(0.4, 0.0)) - hair;
+        slope = (0.5 * lock_slope + 0.6 * hair_slope * hairs_clear) * locks_clear;
+        cover = mix(1.0, 0.45 * lock + 0.55 * hair, hairs_clear);
     }
-    let relief = (0.62 * lean * (1.0 - 0.5 * groove) * clear) - 0.9 * slope;
-    return Wool(normalize(normal + gradient * relief), (1.0 - 0.38 * groove) * (0.86 + 0.28 * fibres));
+    let relief = 0.66 * lean * (1.0 - 0.6 * groove) * clear - slope;
+    return Wool(normalize(normal + gradient * relief), (1.0 - 0.42 * groove) * (1.0 + 0.55 * fibres), cover);
+}
+
+// Light from wool towards the eye. `normal` is that of the surface, `round` that of the yarn as a whole.
+fn yarn_light(position: vec3f, round: vec3f, normal: vec3f, shade: f32, color: vec3f) -> vec4f {
+    let visibility = key_visibility(position, round);
+    // Fibres stand off the yarn: at grazing angles there are more of them, and they are lit from everywhere.
+    let graze = 1.0 - max(0.0, dot(round, towards_eye(position)));
+    let fuzz = graze * graze * graze * (0.10 + 0.26 * visibility * wrapped(dot(round, frame.key.xyz), 0.6));
+    let light = diffuse_light(normal, visibility, 0.3);
+    return vec4f((color * light + mix(color, vec3f(1.0), 0.35) * fuzz) * shade, 1.0);
 }
 
 @fragment
-fn yarn_fragment(in: Corner) -> @location(0) vec4f {
-    let across = dot(in.normal, in.normal);
-    let round = normalize(in.normal + in.facing * sqrt(max(0.0, 1.0 - across)));
-    let detail = wool(round, normalize(in.tangent), in.around);
-    var normal = round;
-    var shade = 1.0;
-    if all(in.facing == vec3f(0.0)) {
-        normal = detail.normal;
-        shade = detail.shade;
+fn tube_fragment(in: Corner) -> @location(0) vec4f {
+    let round = normalize(in.normal);
+    let detail = wool(round, normalize(in.axis), in.around);
+    // The outline frays: towards the edge only single fibres remain.
+    let edge = 1.0 - abs(dot(round, towards_eye(in.position)));
+    if detail.cover < smoothstep(0.62, 1.0, edge) * 0.8 {
+        discard;
     }
-    let visibility = key_visibility(in.position, round);
-    let eye = towards_eye(in.position);
-    // Fibres stand off the yarn: at grazing angles there are more of them, and they are lit from everywhere.
-    let graze = 1.0 - max(0.0, dot(round, eye));
-    let fuzz = graze * graze * graze * (0.10 + 0.22 * visibility * wrapped(dot(round, frame.key.xyz), 0.6));
-    let light = diffuse_light(normal, visibility, 0.3) * shade;
-    return vec4f(in.color * light + mix(in.color, vec3f(1.0), 0.35) * fuzz * shade, 1.0);
+    return yarn_light(in.position, round, detail.normal, detail.shade, in.color);
+}
+
+@fragment
+fn ribbon_fragment(in: Corner) -> @location(0) vec4f {
+    let across = dot(in.normal, in.normal);
+    let round = normalize(in.normal + in.axis * sqrt(max(0.0, 1.0 - across)));
+    return yarn_light(in.position, round, round, 1.0, in.color);
 }

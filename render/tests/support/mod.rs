@@ -27,7 +27,12 @@ pub fn stockinette(wales: usize, courses: usize) -> YarnCurves {
             Vec3::new(x, y, -0.95e-3 * (2.0 * TAU * t).cos())
         };
         let color = colors[if j % 8 < 5 { 0 } else { 1 + j / 8 % 2 }];
-        YarnCurve { points: (0..=wales * PER_LOOP).map(point).collect(), closed: false, radius: 0.62e-3, color }
+        YarnCurve {
+            points: (0..=wales * PER_LOOP).map(point).collect(),
+            closed: false,
+            radius: 0.62e-3,
+            color,
+        }
     };
     YarnCurves { curves: (0..courses).map(row).collect() }
 }
