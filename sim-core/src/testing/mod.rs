@@ -1,0 +1,4 @@
+//! What the tests share.
+
+pub(crate) mod finite_difference;
+pub(crate) mod swatch;
