@@ -75,6 +75,11 @@ impl Measure {
 }
 
 impl Bend {
+    /// θ [rad].
+    pub fn angle(q: &[f64; 12]) -> f64 {
+        Measure::new(q).theta
+    }
+
     /// f, f', f'' at θ [N m²].
     fn profile(&self, theta: f64) -> [f64; 3] {
         let jam = JAM_FACTOR * self.stiffness;

@@ -1,4 +1,3 @@
 //! What the tests share.
 
 pub(crate) mod finite_difference;
-pub(crate) mod swatch;
