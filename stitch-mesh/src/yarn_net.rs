@@ -116,12 +116,9 @@ impl YarnNet {
     /// Segments of one yarn, in order; a closed yarn has as many as visits, an open one has one fewer.
     pub fn segments_of(&self, yarn: YarnId) -> impl Iterator<Item = Segment> + '_ {
         let Yarn { visits, period, .. } = &self.yarns[yarn.index()];
-        let inner =
-            visits.clone().skip(1).map(|v| Segment { ends: [VisitId(v - 1), VisitId(v)], wrap: 0.0 });
-        let closing = period.map(|wrap| Segment {
-            ends: [VisitId(visits.end - 1), VisitId(visits.start)],
-            wrap,
-        });
+        let inner = visits.clone().skip(1).map(|v| Segment { ends: [VisitId(v - 1), VisitId(v)], wrap: 0.0 });
+        let closing =
+            period.map(|wrap| Segment { ends: [VisitId(visits.end - 1), VisitId(visits.start)], wrap });
         inner.chain(closing)
     }
 

@@ -1,0 +1,435 @@
+//! Labelling: every edge of the input mesh becomes course or wale, and so the faces become rows (stage 1 of the flow).
+//!
+//! Yuksel et al. §5.1: every face has exactly two wale edges; faces joined by wale edges are a row. Filling from a border
+//! labels that border as course, the faces on it as a row, edges of the row with a vertex on the border as wale and the
+//! rest as course; filling from a course edge does the same for the row beyond it. The order of filling gives the wale
+//! direction, which can be flipped row by row.
+//!
+//! The paper's inputs are tubes. Here a border ends where it turns a corner (a vertex with one face, or with three or more
+//! faces at an inner corner such as that of an armhole), so that flat pieces and garments with openings are filled alike.
+
+use crate::ids::{EdgeId, FaceId, HalfEdgeId};
+use crate::mesh::PolygonMesh;
+use serde::{Deserialize, Serialize};
+
+/// What an edge of the input mesh is to the knitting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EdgeLabel {
+    /// Along a row: loops pass across it.
+    Course,
+    /// Along a column of loops: the row's yarn passes across it.
+    Wale,
+}
+
+/// The two wale half-edges of a face, which say where its row goes and which way is up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wales {
+    /// The one on the left, running down the wale.
+    pub left: HalfEdgeId,
+    /// The one on the right, running up.
+    pub right: HalfEdgeId,
+}
+
+/// Faces joined by wale edges, left to right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Faces, left to right as seen from the front.
+    pub faces: Vec<FaceId>,
+    /// Whether the last face is joined to the first.
+    pub closed: bool,
+}
+
+/// An edge or face whose label is missing or wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LabelProblem {
+    /// A face with an edge that is neither course nor wale yet.
+    #[error("face {face} is not labelled yet: fill its row from a border or from a labelled row beside it")]
+    Unlabelled {
+        /// The face.
+        face: FaceId,
+    },
+    /// A face needs exactly two wale edges, for its row's yarn to come in and go out.
+    #[error(
+        "face {face} has {count} wale edges, it needs two: label its edges by hand, or change the mesh there"
+    )]
+    WaleCount {
+        /// The face.
+        face: FaceId,
+        /// How many it has.
+        count: usize,
+    },
+    /// Two neighbours in a row have opposite wale directions.
+    #[error("faces {a} and {b} are in one row but knitted in opposite directions")]
+    OpposedInRow {
+        /// One face.
+        a: FaceId,
+        /// Its neighbour.
+        b: FaceId,
+    },
+}
+
+impl LabelProblem {
+    /// The face to look at.
+    pub fn face(&self) -> FaceId {
+        match *self {
+            Self::Unlabelled { face } | Self::WaleCount { face, .. } | Self::OpposedInRow { a: face, .. } => {
+                face
+            }
+        }
+    }
+}
+
+/// Why a labelling tool did nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LabelError {
+    /// Filling from a border needs a border edge.
+    #[error("edge {0} is not on a border")]
+    NotBorder(EdgeId),
+    /// Filling from a course edge needs a course edge.
+    #[error("edge {0} is not a course edge")]
+    NotCourse(EdgeId),
+    /// There is no unlabelled face on that edge.
+    #[error("there is no unlabelled face at edge {0}")]
+    NothingToFill(EdgeId),
+    /// The face has no wale direction to flip yet.
+    #[error("face {0} has no row yet")]
+    NoRow(FaceId),
+}
+
+/// A polygon mesh with the labels given so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LabelledMesh {
+    mesh: PolygonMesh,
+    /// [edge_count]
+    labels: Vec<Option<EdgeLabel>>,
+    /// [face_count]; of faces with exactly two wale edges and all edges labelled.
+    wales: Vec<Option<Wales>>,
+}
+
+impl LabelledMesh {
+    /// A mesh without labels.
+    pub fn new(mesh: PolygonMesh) -> Self {
+        Self { labels: vec![None; mesh.edge_count()], wales: vec![None; mesh.face_count()], mesh }
+    }
+
+    /// A mesh with labels from a file: those of the edges, and for each face its rising wale half-edge where it has one.
+    /// None when the lists do not fit the mesh.
+    pub fn from_parts(
+        mesh: PolygonMesh,
+        labels: Vec<Option<EdgeLabel>>,
+        rising: &[Option<HalfEdgeId>],
+    ) -> Option<Self> {
+        if labels.len() != mesh.edge_count() || rising.len() != mesh.face_count() {
+            return None;
+        }
+        let mut labelled = Self { wales: vec![None; mesh.face_count()], labels, mesh };
+        for (face, rising) in rising.iter().enumerate().map(|(i, r)| (FaceId::new(i), r)) {
+            let candidates = labelled.wale_half_edges(face);
+            labelled.wales[face.index()] = match (candidates, rising) {
+                (Some([a, b]), Some(r)) if a == *r => Some(Wales { left: b, right: a }),
+                (Some([a, b]), Some(r)) if b == *r => Some(Wales { left: a, right: b }),
+                (None, None) => None,
+                _ => return None,
+            };
+        }
+        Some(labelled)
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &PolygonMesh {
+        &self.mesh
+    }
+
+    /// Labels, [edge_count].
+    pub fn labels(&self) -> &[Option<EdgeLabel>] {
+        &self.labels
+    }
+
+    /// The label of one edge.
+    pub fn label(&self, edge: EdgeId) -> Option<EdgeLabel> {
+        self.labels[edge.index()]
+    }
+
+    /// The wale half-edges of a face, once it has exactly two and no edge is unlabelled.
+    pub fn wales(&self, face: FaceId) -> Option<Wales> {
+        self.wales[face.index()]
+    }
+
+    /// Bottom half-edges of a labelled face, left to right.
+    pub fn bottoms(&self, wales: Wales) -> Vec<HalfEdgeId> {
+        self.between(wales.left, wales.right)
+    }
+
+    /// Top half-edges of a labelled face, **right to left** (as the face runs).
+    pub fn tops(&self, wales: Wales) -> Vec<HalfEdgeId> {
+        self.between(wales.right, wales.left)
+    }
+
+    fn between(&self, from: HalfEdgeId, to: HalfEdgeId) -> Vec<HalfEdgeId> {
+        std::iter::successors(Some(self.mesh.next(from)), |h| Some(self.mesh.next(*h)))
+            .take_while(|h| *h != to)
+            .collect()
+    }
+
+    fn label_of(&self, h: HalfEdgeId) -> Option<EdgeLabel> {
+        self.label(self.mesh.edge(h))
+    }
+
+    /// The wale half-edges of a face when it is fully labelled and has just two.
+    fn wale_half_edges(&self, face: FaceId) -> Option<[HalfEdgeId; 2]> {
+        let half_edges: Vec<HalfEdgeId> = self.mesh.face_half_edges(face).collect();
+        if half_edges.iter().any(|h| self.label_of(*h).is_none()) {
+            return None;
+        }
+        let wales: Vec<HalfEdgeId> =
+            half_edges.into_iter().filter(|h| self.label_of(*h) == Some(EdgeLabel::Wale)).collect();
+        wales.try_into().ok()
+    }
+
+    /// Fills the first row from a border edge: its border, up to the next corners, becomes course. Returns the faces of the row.
+    ///
+    /// # Errors
+    /// [`LabelError::NotBorder`], or [`LabelError::NothingToFill`] where the row is there already.
+    pub fn fill_from_border(&mut self, edge: EdgeId) -> Result<Vec<FaceId>, LabelError> {
+        let (start, twin) = self.mesh.edge_sides(edge);
+        if twin.is_some() {
+            return Err(LabelError::NotBorder(edge));
+        }
+        let base = self.run(
+            start,
+            |h| self.mesh.next_on_border(h).filter(|_| self.mesh.valence(self.mesh.tip(h)) == 2),
+            |h| self.border_before(h).filter(|_| self.mesh.valence(self.mesh.origin(h)) == 2),
+        );
+        self.fill(edge, base)
+    }
+
+    /// Fills the row beyond a course edge: the run of course edges along the labelled row, as far as there are unlabelled
+    /// faces beyond. Returns the faces of the new row.
+    ///
+    /// # Errors
+    /// [`LabelError::NotCourse`], or [`LabelError::NothingToFill`] where no face beyond is unlabelled.
+    pub fn fill_from_course(&mut self, edge: EdgeId) -> Result<Vec<FaceId>, LabelError> {
+        if self.label(edge) != Some(EdgeLabel::Course) {
+            return Err(LabelError::NotCourse(edge));
+        }
+        let (first, twin) = self.mesh.edge_sides(edge);
+        let start = [Some(first), twin]
+            .into_iter()
+            .flatten()
+            .find(|h| self.wales(self.mesh.face(*h)).is_none())
+            .ok_or(LabelError::NothingToFill(edge))?;
+        let open = |h: &HalfEdgeId| {
+            self.wales(self.mesh.face(*h)).is_none() && self.label_of(*h) == Some(EdgeLabel::Course)
+        };
+        // On the far side the course runs the other way.
+        let base = self.run(
+            start,
+            |h| {
+                let far = self.mesh.twin(h)?;
+                self.mesh.twin(self.course_before(far)?).filter(open)
+            },
+            |h| {
+                let far = self.mesh.twin(h)?;
+                self.mesh.twin(self.course_after(far)?).filter(open)
+            },
+        );
+        self.fill(edge, base)
+    }
+
+    /// The longest run through `start` that `next` and `before` allow, in order; once round when it is a ring.
+    fn run(
+        &self,
+        start: HalfEdgeId,
+        next: impl Fn(HalfEdgeId) -> Option<HalfEdgeId>,
+        before: impl Fn(HalfEdgeId) -> Option<HalfEdgeId>,
+    ) -> Vec<HalfEdgeId> {
+        let mut run = vec![start];
+        let mut at = start;
+        while let Some(h) = next(at) {
+            if h == start || run.len() > self.mesh.half_edge_count() {
+                return run;
+            }
+            run.push(h);
+            at = h;
+        }
+        let mut front = Vec::new();
+        at = start;
+        while let Some(h) = before(at).filter(|_| front.len() <= self.mesh.half_edge_count()) {
+            front.push(h);
+            at = h;
+        }
+        front.reverse();
+        front.extend(run);
+        front
+    }
+
+    fn border_before(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        // Turn about the origin until the border on the other side of the fan.
+        let mut at = self.mesh.prev(h);
+        while let Some(twin) = self.mesh.twin(at) {
+            at = self.mesh.prev(twin);
+            if at == h {
+                return None;
+            }
+        }
+        Some(at)
+    }
+
+    /// The next course half-edge of the same row and the same side, seen from the labelled face of `h`.
+    fn course_after(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        let after = self.mesh.next(h);
+        match self.label_of(after)? {
+            EdgeLabel::Course => Some(after),
+            EdgeLabel::Wale => self.mesh.twin(after).map(|t| self.mesh.next(t)),
+        }
+        .filter(|n| self.label_of(*n) == Some(EdgeLabel::Course))
+    }
+
+    fn course_before(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        let before = self.mesh.prev(h);
+        match self.label_of(before)? {
+            EdgeLabel::Course => Some(before),
+            EdgeLabel::Wale => self.mesh.twin(before).map(|t| self.mesh.prev(t)),
+        }
+        .filter(|n| self.label_of(*n) == Some(EdgeLabel::Course))
+    }
+
+    /// Labels the row of faces that stand on `base`.
+    fn fill(&mut self, edge: EdgeId, base: Vec<HalfEdgeId>) -> Result<Vec<FaceId>, LabelError> {
+        let faces: Vec<FaceId> =
+            base.iter().map(|h| self.mesh.face(*h)).filter(|f| self.wales(*f).is_none()).collect();
+        if faces.is_empty() {
+            return Err(LabelError::NothingToFill(edge));
+        }
+        let mut on_base = vec![false; self.mesh.vertex_count()];
+        for h in &base {
+            self.labels[self.mesh.edge(*h).index()] = Some(EdgeLabel::Course);
+            on_base[self.mesh.origin(*h).index()] = true;
+            on_base[self.mesh.tip(*h).index()] = true;
+        }
+        for face in &faces {
+            for h in self.mesh.face_half_edges(*face) {
+                let touches = on_base[self.mesh.origin(h).index()] || on_base[self.mesh.tip(h).index()];
+                let label = if touches { EdgeLabel::Wale } else { EdgeLabel::Course };
+                self.labels[self.mesh.edge(h).index()].get_or_insert(label);
+            }
+        }
+        // The base is the bottom: going round the face, the wale edge after it rises.
+        for h in base {
+            let face = self.mesh.face(h);
+            if self.wales(face).is_none()
+                && let Some([a, b]) = self.wale_half_edges(face)
+            {
+                let base_before_b = self.between(a, b).contains(&h);
+                self.wales[face.index()] = Some(match base_before_b {
+                    true => Wales { left: a, right: b },
+                    false => Wales { left: b, right: a },
+                });
+            }
+        }
+        Ok(faces)
+    }
+
+    /// Labels a single edge by hand, or takes its label away. Faces at it get a wale direction when that completes them:
+    /// that of a neighbour in the row if there is one.
+    pub fn set_label(&mut self, edge: EdgeId, label: Option<EdgeLabel>) {
+        self.labels[edge.index()] = label;
+        let (first, twin) = self.mesh.edge_sides(edge);
+        for face in [Some(first), twin].into_iter().flatten().map(|h| self.mesh.face(h)) {
+            self.wales[face.index()] = None;
+            if let Some([a, b]) = self.wale_half_edges(face) {
+                let joins = |left: HalfEdgeId, right: HalfEdgeId| {
+                    let neighbour = |h: HalfEdgeId| {
+                        let twin = self.mesh.twin(h)?;
+                        Some((twin, self.wales(self.mesh.face(twin))?))
+                    };
+                    neighbour(left).is_some_and(|(t, w)| w.right == t)
+                        || neighbour(right).is_some_and(|(t, w)| w.left == t)
+                };
+                let (left, right) = if joins(b, a) { (b, a) } else { (a, b) };
+                self.wales[face.index()] = Some(Wales { left, right });
+            }
+        }
+    }
+
+    /// Turns the wale direction of the whole row of a face.
+    ///
+    /// # Errors
+    /// [`LabelError::NoRow`] where the face has no row yet.
+    pub fn flip_row(&mut self, face: FaceId) -> Result<(), LabelError> {
+        self.wales(face).ok_or(LabelError::NoRow(face))?;
+        for face in self.row_of(face).faces {
+            if let Some(w) = &mut self.wales[face.index()] {
+                *w = Wales { left: w.right, right: w.left };
+            }
+        }
+        Ok(())
+    }
+
+    /// The row through a face, walking across wale edges as far as the directions agree.
+    pub fn row_of(&self, face: FaceId) -> Row {
+        let across = |h: HalfEdgeId, arrives_left: bool| {
+            let twin = self.mesh.twin(h)?;
+            let face = self.mesh.face(twin);
+            let wales = self.wales(face)?;
+            (twin == if arrives_left { wales.left } else { wales.right }).then_some(face)
+        };
+        let mut faces = vec![face];
+        let mut at = face;
+        while let Some(next) = self.wales(at).and_then(|w| across(w.right, true)) {
+            if next == face {
+                return Row { faces, closed: true };
+            }
+            faces.push(next);
+            at = next;
+        }
+        at = face;
+        let mut front = Vec::new();
+        while let Some(before) = self.wales(at).and_then(|w| across(w.left, false)) {
+            front.push(before);
+            at = before;
+        }
+        front.reverse();
+        front.extend(faces);
+        Row { faces: front, closed: false }
+    }
+
+    /// All rows of labelled faces, in order of their first face.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut seen = vec![false; self.mesh.face_count()];
+        let mut rows = Vec::new();
+        for face in self.mesh.faces() {
+            if !seen[face.index()] && self.wales(face).is_some() {
+                let row = self.row_of(face);
+                row.faces.iter().for_each(|f| seen[f.index()] = true);
+                rows.push(row);
+            }
+        }
+        rows
+    }
+
+    /// Everything that keeps this mesh from being knitted. Empty when it can be tessellated.
+    pub fn problems(&self) -> Vec<LabelProblem> {
+        let mut problems = Vec::new();
+        for face in self.mesh.faces() {
+            let labels: Vec<_> = self.mesh.face_half_edges(face).map(|h| self.label_of(h)).collect();
+            if labels.contains(&None) {
+                problems.push(LabelProblem::Unlabelled { face });
+                continue;
+            }
+            let count = labels.iter().filter(|l| **l == Some(EdgeLabel::Wale)).count();
+            let Some(wales) = self.wales(face).filter(|_| count == 2) else {
+                problems.push(LabelProblem::WaleCount { face, count });
+                continue;
+            };
+            if let Some(twin) = self.mesh.twin(wales.right)
+                && let Some(other) = self.wales(self.mesh.face(twin))
+                && other.left != twin
+            {
+                problems.push(LabelProblem::OpposedInRow { a: face, b: self.mesh.face(twin) });
+            }
+        }
+        problems
+    }
+}

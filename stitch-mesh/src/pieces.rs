@@ -1,0 +1,79 @@
+//! Plain pieces of fabric, stitch by stitch: the rectangle and the tube that swatches and experiments begin with.
+
+use crate::mesh::PolygonMesh;
+use crate::stitch::Stitch;
+use crate::stitch_mesh::{StitchMesh, StitchMeshError};
+use crate::tessellate::StitchSize;
+use glam::DVec3;
+
+/// A flat piece of `wide` × `high` knit stitches in the plane z = 0, front to +z, wales up along +y, centred on the origin.
+///
+/// # Errors
+/// A piece without stitches is no mesh.
+pub fn rectangle(wide: usize, high: usize, size: StitchSize) -> Result<StitchMesh, StitchMeshError> {
+    let place = |i: usize, j: usize| {
+        DVec3::new(
+            (i as f64 - wide as f64 / 2.0) * size.width,
+            (j as f64 - high as f64 / 2.0) * size.height,
+            0.0,
+        )
+    };
+    quads(wide, wide + 1, high, place)
+}
+
+/// A tube of `around` × `high` knit stitches about the y axis, front outwards, wales up, centred on the origin.
+///
+/// # Errors
+/// Fewer than three stitches around enclose nothing.
+pub fn tube(around: usize, high: usize, size: StitchSize) -> Result<StitchMesh, StitchMeshError> {
+    let radius = around as f64 * size.width / std::f64::consts::TAU;
+    let place = |i: usize, j: usize| {
+        let angle = i as f64 / around as f64 * std::f64::consts::TAU;
+        DVec3::new(radius * angle.sin(), (j as f64 - high as f64 / 2.0) * size.height, radius * angle.cos())
+    };
+    quads(around, around, high, place)
+}
+
+/// Quadrilaterals in rows of `wide` over rows of `vertices`; a row with as many vertices as faces is closed.
+fn quads(
+    wide: usize,
+    vertices: usize,
+    high: usize,
+    place: impl Fn(usize, usize) -> DVec3,
+) -> Result<StitchMesh, StitchMeshError> {
+    let positions = (0..=high).flat_map(|j| (0..vertices).map(move |i| (i, j))).map(|(i, j)| place(i, j));
+    let at = |i: usize, j: usize| (j * vertices + i % vertices) as u32;
+    let faces: Vec<Vec<u32>> = (0..high)
+        .flat_map(|j| (0..wide).map(move |i| (i, j)))
+        .map(|(i, j)| vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
+        .collect();
+    let mesh = PolygonMesh::new(positions.collect(), &faces)?;
+    let stitches = vec![Stitch::knit(); mesh.face_count()];
+    StitchMesh::new(mesh, stitches)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_have_their_rows() {
+        let size = StitchSize::of_width(3e-3);
+        let flat = rectangle(5, 4, size).unwrap();
+        assert!(flat.rows().iter().all(|r| r.faces.len() == 5 && !r.closed));
+        let round = tube(9, 4, size).unwrap();
+        assert!(round.rows().iter().all(|r| r.faces.len() == 9 && r.closed));
+        assert_eq!((flat.rows().len(), round.rows().len()), (4, 4));
+        let front = round.mesh().face_center(round.rows()[0].faces[0]);
+        assert!(round.mesh().face_area_vector(round.rows()[0].faces[0]).dot(front.with_y(0.0)) > 0.0);
+        assert!(rectangle(0, 3, size).is_err());
+    }
+
+    #[test]
+    fn closed_rows_begin_above_each_other() {
+        let round = tube(7, 5, StitchSize::of_width(3e-3)).unwrap();
+        for pair in round.rows().windows(2) {
+            assert_eq!(round.above(pair[0].faces[0]).next(), Some(pair[1].faces[0]));
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! The stitch mesh: one face a stitch (stages 2 to 4 of the flow; Yuksel et al. §4).
+//!
+//! # Invariants
+//! - Every face has exactly two wale edges. Its half-edges stand in a fixed order: **bottoms left to right, right wale,
+//!   tops right to left, left wale**, and its stitch has as many bottoms and tops as the face. So where an edge lies in its
+//!   face says what it is, and no label can contradict it.
+//! - Neighbours in a row meet right wale to left wale.
+//! - Two rows meet course to course: usually tops to bottoms; tops to tops or bottoms to bottoms where the wale directions
+//!   oppose each other (§4.4).
+//!
+//! Changing the stitch of a face keeps all ids; everything else builds a new mesh.
+
+use crate::ids::{FaceId, HalfEdgeId};
+use crate::label::Row;
+use crate::mesh::{MeshError, PolygonMesh};
+use crate::stitch::Stitch;
+
+/// A mesh of stitches. See the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StitchMesh {
+    mesh: PolygonMesh,
+    stitches: Vec<Stitch>,
+}
+
+/// Why a mesh with stitches is not a stitch mesh, or a stitch cannot be set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StitchMeshError {
+    /// The faces do not make a mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The numbers of faces and stitches differ.
+    #[error("{faces} faces, but {stitches} stitches")]
+    Count {
+        /// Number of faces.
+        faces: usize,
+        /// Number of stitches.
+        stitches: usize,
+    },
+    /// A stitch with other numbers of bottoms and tops than its face.
+    #[error("face {face} has {edges} course edges; {stitch} joins {bottoms} loops below to {tops} above")]
+    Arity {
+        /// The face.
+        face: FaceId,
+        /// Its course edges, bottoms and tops together.
+        edges: usize,
+        /// The stitch.
+        stitch: String,
+        /// Its bottoms.
+        bottoms: usize,
+        /// Its tops.
+        tops: usize,
+    },
+    /// Neighbours that do not meet right wale to left wale.
+    #[error(
+        "the wale edge between faces {0} and {1} is not a right edge of one and a left edge of the other"
+    )]
+    Wales(FaceId, FaceId),
+    /// A face that does not exist.
+    #[error("there is no face {0}")]
+    NoFace(FaceId),
+    /// A stitch whose loops below would be held by nothing.
+    #[error("face {face} cannot be {stitch}: the loops below it would be held by nothing")]
+    HoldsNothing {
+        /// The face.
+        face: FaceId,
+        /// The stitch.
+        stitch: String,
+    },
+    /// A stitch that pulls its yarn through loops, where there are none below.
+    #[error("face {face} cannot be {stitch}: there is no loop below it; only yarn-overs begin from nothing")]
+    NothingBelow {
+        /// The face.
+        face: FaceId,
+        /// The stitch.
+        stitch: String,
+    },
+}
+
+impl StitchMesh {
+    /// Puts mesh and stitches together.
+    ///
+    /// # Errors
+    /// [`StitchMeshError`] where an invariant does not hold.
+    pub fn new(mesh: PolygonMesh, stitches: Vec<Stitch>) -> Result<Self, StitchMeshError> {
+        if stitches.len() != mesh.face_count() {
+            return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
+        }
+        let stitch_mesh = Self { mesh, stitches };
+        for face in stitch_mesh.mesh.faces() {
+            stitch_mesh.check_fit(face, stitch_mesh.stitch(face))?;
+        }
+        for face in stitch_mesh.mesh.faces() {
+            if let Some(twin) = stitch_mesh.mesh.twin(stitch_mesh.right(face)) {
+                let other = stitch_mesh.mesh.face(twin);
+                if stitch_mesh.left(other) != twin {
+                    return Err(StitchMeshError::Wales(face, other));
+                }
+            }
+        }
+        Ok(stitch_mesh)
+    }
+
+    /// Fit of a stitch in its face: as many edges, old loops to be pulled through, and nothing dropped.
+    fn check_fit(&self, face: FaceId, stitch: &Stitch) -> Result<(), StitchMeshError> {
+        let edges = self.mesh.face_half_edges(face).len() - 2;
+        let (bottoms, tops) = (stitch.bottoms(), stitch.tops());
+        if edges != bottoms + tops {
+            return Err(StitchMeshError::Arity { face, edges, stitch: stitch.to_string(), bottoms, tops });
+        }
+        let below = self.mesh.face_half_edges(face).take(bottoms);
+        if !stitch.holds() && below.into_iter().any(|h| self.mesh.twin(h).is_some()) {
+            return Err(StitchMeshError::HoldsNothing { face, stitch: stitch.to_string() });
+        }
+        if bottoms == 0 && stitch.holds() {
+            return Err(StitchMeshError::NothingBelow { face, stitch: stitch.to_string() });
+        }
+        Ok(())
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &PolygonMesh {
+        &self.mesh
+    }
+
+    /// All stitches, [face_count].
+    pub fn stitches(&self) -> &[Stitch] {
+        &self.stitches
+    }
+
+    /// The stitch of a face.
+    pub fn stitch(&self, face: FaceId) -> &Stitch {
+        &self.stitches[face.index()]
+    }
+
+    /// Changes the stitch of a face to one with the same numbers of bottoms and tops. All ids survive.
+    ///
+    /// # Errors
+    /// [`StitchMeshError`] where the stitch does not fit; nothing is changed then.
+    pub fn set_stitch(&mut self, face: FaceId, stitch: Stitch) -> Result<(), StitchMeshError> {
+        let old = self.stitches.get(face.index()).ok_or(StitchMeshError::NoFace(face))?;
+        if (old.bottoms(), old.tops()) != (stitch.bottoms(), stitch.tops()) {
+            let edges = old.bottoms() + old.tops();
+            let (bottoms, tops) = (stitch.bottoms(), stitch.tops());
+            return Err(StitchMeshError::Arity { face, edges, stitch: stitch.to_string(), bottoms, tops });
+        }
+        self.check_fit(face, &stitch)?;
+        self.stitches[face.index()] = stitch;
+        Ok(())
+    }
+
+    /// Bottom half-edges of a face, left to right.
+    pub fn bottoms(&self, face: FaceId) -> impl ExactSizeIterator<Item = HalfEdgeId> + use<> {
+        self.mesh.face_half_edges(face).take(self.stitch(face).bottoms())
+    }
+
+    /// Top half-edges of a face, left to right (against the way the face runs).
+    pub fn tops(&self, face: FaceId) -> impl ExactSizeIterator<Item = HalfEdgeId> + use<> {
+        let stitch = self.stitch(face);
+        self.mesh.face_half_edges(face).skip(stitch.bottoms() + 1).take(stitch.tops()).rev()
+    }
+
+    /// The right wale half-edge of a face, running up.
+    pub fn right(&self, face: FaceId) -> HalfEdgeId {
+        let first = self.mesh.first_half_edge(face).index();
+        HalfEdgeId::new(first + self.stitch(face).bottoms())
+    }
+
+    /// The left wale half-edge of a face, running down.
+    pub fn left(&self, face: FaceId) -> HalfEdgeId {
+        let stitch = self.stitch(face);
+        HalfEdgeId::new(self.right(face).index() + stitch.tops() + 1)
+    }
+
+    /// Whether a half-edge is a bottom of its face.
+    pub fn is_bottom(&self, h: HalfEdgeId) -> bool {
+        h < self.right(self.mesh.face(h))
+    }
+
+    /// Whether a half-edge is a wale edge.
+    pub fn is_wale(&self, h: HalfEdgeId) -> bool {
+        let face = self.mesh.face(h);
+        h == self.right(face) || h == self.left(face)
+    }
+
+    /// The faces above a face, left to right; those it meets top to bottom only.
+    pub fn above(&self, face: FaceId) -> impl Iterator<Item = FaceId> + '_ {
+        self.tops(face)
+            .filter_map(|h| self.mesh.twin(h))
+            .filter(|t| self.is_bottom(*t))
+            .map(|t| self.mesh.face(t))
+    }
+
+    /// The faces below a face, left to right; those it meets bottom to top only.
+    pub fn below(&self, face: FaceId) -> impl Iterator<Item = FaceId> + '_ {
+        self.bottoms(face)
+            .filter_map(|h| self.mesh.twin(h))
+            .filter(|t| !self.is_bottom(*t))
+            .map(|t| self.mesh.face(t))
+    }
+
+    /// All rows, lower rows before those above them; a closed row begins above the beginning of the row below it, so that
+    /// columns line up.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut row_of = vec![usize::MAX; self.mesh.face_count()];
+        let mut rows = Vec::new();
+        for face in self.mesh.faces() {
+            if row_of[face.index()] == usize::MAX {
+                let row = self.row_from(face);
+                row.faces.iter().for_each(|f| row_of[f.index()] = rows.len());
+                rows.push(row);
+            }
+        }
+        // Height of a row: one more than the highest below it. A garment knitted in a circle (a Möbius band of rows) has no
+        // lowest row; going round more often than there are rows says so, and the heights so far are as good as any.
+        let mut height = vec![0usize; rows.len()];
+        for _ in 0..rows.len() {
+            let mut changed = false;
+            for (r, row) in rows.iter().enumerate() {
+                let below =
+                    row.faces.iter().flat_map(|f| self.below(*f)).map(|f| height[row_of[f.index()]] + 1);
+                if let Some(h) = below.max().filter(|h| *h > height[r] && *h <= rows.len()) {
+                    height[r] = h;
+                    changed = true;
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        order.sort_by_key(|r| (height[*r], *r));
+        let mut sorted: Vec<Row> = Vec::with_capacity(rows.len());
+        let mut begins = vec![false; self.mesh.face_count()];
+        for r in order {
+            let mut row = rows[r].clone();
+            if row.closed
+                && let Some(start) = row.faces.iter().position(|f| {
+                    let mut below = self.below(*f);
+                    below.next().is_some_and(|b| begins[b.index()])
+                })
+            {
+                row.faces.rotate_left(start);
+            }
+            begins[row.faces[0].index()] = true;
+            sorted.push(row);
+        }
+        sorted
+    }
+
+    fn row_from(&self, face: FaceId) -> Row {
+        let right = |f: FaceId| self.mesh.face_across(self.right(f));
+        let left = |f: FaceId| self.mesh.face_across(self.left(f));
+        let mut first = face;
+        while let Some(before) = left(first) {
+            if before == face {
+                first = face;
+                break;
+            }
+            first = before;
+        }
+        let mut faces = vec![first];
+        let mut at = first;
+        while let Some(next) = right(at) {
+            if next == first {
+                return Row { faces, closed: true };
+            }
+            faces.push(next);
+            at = next;
+        }
+        Row { faces, closed: false }
+    }
+
+    /// Number of loops: top edges of all faces.
+    pub fn loop_count(&self) -> usize {
+        self.stitches.iter().map(Stitch::tops).sum()
+    }
+}

@@ -1,0 +1,237 @@
+//! What can be wrong with a polygon mesh, found before any structure is built on it.
+
+use crate::ids::{FaceId, VertexId};
+use crate::mesh::area_vector;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// One thing wrong with a mesh, by face, edge or vertex (numbered from 0).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshProblem {
+    /// There are no faces at all.
+    #[error("the mesh has no faces")]
+    Empty,
+    /// A coordinate is not a finite number.
+    #[error("vertex {0} has a coordinate that is not a finite number")]
+    NotFinite(VertexId),
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but there are only {count}")]
+    MissingVertex {
+        /// The face.
+        face: FaceId,
+        /// The vertex it names.
+        vertex: u32,
+        /// Number of vertices.
+        count: usize,
+    },
+    /// A face with fewer than three corners, a corner twice, or no area.
+    #[error("face {face} is degenerate: {why}")]
+    DegenerateFace {
+        /// The face.
+        face: FaceId,
+        /// What is degenerate about it.
+        why: &'static str,
+    },
+    /// More than two faces share an edge.
+    #[error("edge {a}–{b} is not manifold: {count} faces share it")]
+    NonManifoldEdge {
+        /// One end.
+        a: VertexId,
+        /// The other end.
+        b: VertexId,
+        /// Number of faces there.
+        count: usize,
+    },
+    /// Two neighbours disagree about which side is the front.
+    #[error("face {face} is flipped against its neighbour, face {neighbour}, at edge {a}–{b}")]
+    FlippedFace {
+        /// The later face.
+        face: FaceId,
+        /// The earlier face.
+        neighbour: FaceId,
+        /// One end of their edge.
+        a: VertexId,
+        /// The other end.
+        b: VertexId,
+    },
+    /// A vertex at which several fans of faces meet in one point only.
+    #[error("vertex {0} is not manifold: faces meet there in one point only")]
+    NonManifoldVertex(VertexId),
+    /// A vertex that no face uses.
+    #[error("vertex {0} is isolated: no face uses it")]
+    IsolatedVertex(VertexId),
+}
+
+/// Everything wrong with a mesh given as positions [m] and faces. Empty when [`crate::mesh::PolygonMesh::new`] succeeds.
+pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+    let mut problems = Vec::new();
+    if faces.is_empty() {
+        problems.push(MeshProblem::Empty);
+    }
+    let not_finite = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
+    problems.extend(not_finite.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v))));
+    for (f, vertices) in faces.iter().enumerate() {
+        let face = FaceId::new(f);
+        let missing = vertices.iter().find(|v| **v as usize >= positions.len());
+        if let Some(&vertex) = missing {
+            problems.push(MeshProblem::MissingVertex { face, vertex, count: positions.len() });
+        }
+    }
+    if !problems.is_empty() {
+        return problems; // what follows looks vertices up and measures them
+    }
+    for (f, vertices) in faces.iter().enumerate() {
+        let face = FaceId::new(f);
+        if let Some(why) = degenerate(positions, vertices) {
+            problems.push(MeshProblem::DegenerateFace { face, why });
+        }
+    }
+    problems.extend(edge_problems(faces));
+    if problems.is_empty() {
+        problems = vertex_problems(positions.len(), faces);
+    }
+    problems
+}
+
+fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
+    if vertices.len() < 3 {
+        return Some("it has fewer than three corners");
+    }
+    let mut sorted = vertices.to_vec();
+    sorted.sort_unstable();
+    if sorted.windows(2).any(|w| w[0] == w[1]) {
+        return Some("it has a corner twice");
+    }
+    let points: Vec<DVec3> = vertices.iter().map(|v| positions[*v as usize]).collect();
+    let perimeter: f64 = (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum();
+    // A face thinner than a millionth of its outline cannot hold a stitch.
+    (area_vector(&points).length() <= 1e-6 * perimeter * perimeter).then_some("it has no area")
+}
+
+fn edge_problems(faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+    // Uses of every edge: the face, and whether it runs from the smaller vertex to the larger. Ordered, so that the same
+    // mesh is always described in the same words.
+    let mut uses: BTreeMap<(u32, u32), Vec<(usize, bool)>> = BTreeMap::new();
+    for (f, vertices) in faces.iter().enumerate() {
+        for (i, &a) in vertices.iter().enumerate() {
+            let b = vertices[(i + 1) % vertices.len()];
+            uses.entry((a.min(b), a.max(b))).or_default().push((f, a < b));
+        }
+    }
+    let mut problems = Vec::new();
+    for ((a, b), uses) in uses {
+        let (a, b) = (VertexId(a), VertexId(b));
+        match uses[..] {
+            [(first, up), (second, also)] if up == also && first != second => {
+                let (face, neighbour) = (FaceId::new(second), FaceId::new(first));
+                problems.push(MeshProblem::FlippedFace { face, neighbour, a, b });
+            }
+            ref many if many.len() > 2 => {
+                problems.push(MeshProblem::NonManifoldEdge { a, b, count: many.len() });
+            }
+            _ => {}
+        }
+    }
+    problems
+}
+
+/// Isolated vertices and vertices with several fans. The edges are manifold already, so the faces around a vertex form
+/// chains: as many as there are corners less inner edges, or a single closed fan.
+fn vertex_problems(count: usize, faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+    // Around each vertex, every corner joins the edge it comes in on with the edge it goes out on.
+    let mut corners: Vec<Vec<(u32, u32)>> = vec![Vec::new(); count];
+    for vertices in faces {
+        let n = vertices.len();
+        for i in 0..n {
+            corners[vertices[i] as usize].push((vertices[(i + n - 1) % n], vertices[(i + 1) % n]));
+        }
+    }
+    let mut problems = Vec::new();
+    for (v, corners) in corners.iter().enumerate() {
+        let vertex = VertexId::new(v);
+        let Some(&first) = corners.first() else {
+            problems.push(MeshProblem::IsolatedVertex(vertex));
+            continue;
+        };
+        // Walk both ways from the first corner; a single fan reaches all of them.
+        let mut reached = 1;
+        let mut at = first.0;
+        while let Some(c) = corners.iter().find(|c| c.1 == at).filter(|c| **c != first) {
+            (at, reached) = (c.0, reached + 1);
+        }
+        if at != first.1 || corners.len() == 1 {
+            at = first.1;
+            while let Some(c) = corners.iter().find(|c| c.0 == at) {
+                (at, reached) = (c.1, reached + 1);
+            }
+        }
+        if reached != corners.len() {
+            problems.push(MeshProblem::NonManifoldVertex(vertex));
+        }
+    }
+    problems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> (Vec<DVec3>, Vec<Vec<u32>>) {
+        let at = |i: u32| DVec3::new((i % 3) as f64, (i / 3) as f64, 0.0);
+        let quad = |i: u32| vec![i, i + 1, i + 4, i + 3];
+        ((0..9).map(at).collect(), [0, 1, 3, 4].map(quad).to_vec())
+    }
+
+    #[test]
+    fn a_good_mesh_has_no_problems() {
+        let (positions, faces) = grid();
+        assert_eq!(validate(&positions, &faces), []);
+    }
+
+    #[test]
+    fn every_problem_is_named() {
+        let (positions, faces) = grid();
+        assert_eq!(validate(&positions, &[]), [MeshProblem::Empty]);
+
+        let mut bad = positions.clone();
+        bad[4].y = f64::NAN;
+        assert_eq!(validate(&bad, &faces), [MeshProblem::NotFinite(VertexId(4))]);
+
+        let mut bad = faces.clone();
+        bad[1][2] = 99;
+        assert!(matches!(
+            validate(&positions, &bad)[..],
+            [MeshProblem::MissingVertex { face: FaceId(1), vertex: 99, count: 9 }]
+        ));
+
+        let mut bad = faces.clone();
+        bad[2].reverse();
+        assert!(matches!(
+            validate(&positions, &bad)[..],
+            [MeshProblem::FlippedFace { .. }, MeshProblem::FlippedFace { .. }]
+        ));
+
+        let mut bad = faces.clone();
+        bad.push(vec![3, 4, 8]);
+        assert!(validate(&positions, &bad).contains(&MeshProblem::NonManifoldEdge {
+            a: VertexId(3),
+            b: VertexId(4),
+            count: 3
+        }));
+
+        assert!(matches!(
+            validate(&positions, &[vec![0, 1], vec![0, 1, 1], vec![0, 1, 2]])[..],
+            [
+                MeshProblem::DegenerateFace { face: FaceId(0), .. },
+                MeshProblem::DegenerateFace { face: FaceId(1), .. },
+                MeshProblem::DegenerateFace { face: FaceId(2), .. },
+                ..
+            ]
+        ));
+
+        // Two corners of the grid alone touch in the middle vertex only, and six vertices lie idle.
+        let bow_tie = validate(&positions, &[faces[0].clone(), faces[3].clone()]);
+        assert!(bow_tie.contains(&MeshProblem::NonManifoldVertex(VertexId(4))));
+        assert!(bow_tie.contains(&MeshProblem::IsolatedVertex(VertexId(2))));
+    }
+}
