@@ -20,6 +20,10 @@ fn main() {
         let step = start.elapsed().as_secs_f64() * 1e3 / steps as f64;
         println!("{side} x {side}: setup {setup:.0} ms, step {step:.1} ms");
         println!("{:?}", simulator.facts());
-        println!("{:?} {:?}", common::size(simulator.state()), common::edge_heights(&net, simulator.state(), side, side).map(|x| 1e3*x));
+        println!(
+            "{:?} {:?}",
+            common::size(simulator.state()),
+            common::edge_heights(&net, simulator.state(), side, side).map(|x| 1e3 * x)
+        );
     }
 }

@@ -63,7 +63,7 @@ pub(crate) struct Stuck {
 impl Stepper {
     pub fn new(model: Model, material: &Material) -> Result<Self, SolveError> {
         let system = System::new(&model);
-        let cholesky = Cholesky::new(&system.matrix)?;
+        let cholesky = Cholesky::new(&model, &system.matrix)?;
         let masses = model.node_masses(material);
         Ok(Self { model, system, cholesky, masses })
     }

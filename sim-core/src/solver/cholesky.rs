@@ -1,7 +1,10 @@
 //! Sparse Cholesky factorisation, its symbolic part kept for the life of a net.
 
 use super::matrix::BlockMatrix;
+use super::ordering::elimination_order;
+use crate::model::Model;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
@@ -28,12 +31,17 @@ pub(crate) struct Cholesky {
 
 impl Cholesky {
     /// Orders the unknowns and lays out the factors.
-    pub fn new(matrix: &BlockMatrix) -> Result<Self, SolveError> {
+    pub fn new(model: &Model, matrix: &BlockMatrix) -> Result<Self, SolveError> {
         let out_of_memory = SolveError::OutOfMemory(matrix.dof_count());
+        let order = elimination_order(model);
+        let mut place = vec![0; order.len()];
+        for (new, old) in order.iter().enumerate() {
+            place[*old as usize] = new as u32;
+        }
         let symbolic = factorize_symbolic_cholesky(
             pattern(matrix),
             Side::Lower,
-            SymmetricOrdering::Amd,
+            SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
             CholeskySymbolicParams::default(),
         )
         .map_err(|_| out_of_memory)?;

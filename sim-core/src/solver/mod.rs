@@ -2,3 +2,4 @@
 
 pub(crate) mod cholesky;
 pub(crate) mod matrix;
+mod ordering;

@@ -53,7 +53,8 @@ pub fn edge_heights(net: &YarnNet, state: &YarnState, wide: usize, high: usize) 
     let row = |face: usize| ((face / wide) as f64 + 0.5) / high as f64;
     let mean = |chosen: &dyn Fn(f64, f64) -> bool| {
         let all = net.nodes.iter().zip(&state.position);
-        let those = all.filter_map(|(n, x)| n.face.filter(|f| chosen(place(f.index()), row(f.index()))).map(|_| *x));
+        let those =
+            all.filter_map(|(n, x)| n.face.filter(|f| chosen(place(f.index()), row(f.index()))).map(|_| *x));
         let (sum, count) = those.fold((DVec3::ZERO, 0.0), |(s, c), x| (s + x, c + 1.0));
         sum / count
     };
