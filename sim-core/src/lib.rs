@@ -1,1 +1,51 @@
-//! Placeholder while the crate is being written.
+//! Everything that iterates: the persistent-contact yarn simulator and its thread.
+//!
+//! The model is that of Cirio et al., *Yarn-Level Cloth Simulation with Sliding Persistent Contacts*. The flow within a step
+//! is the list of stages in `step.rs`; each force has a file of its own that opens with its energy, gradient and Hessian.
+//!
+//! | notation | meaning |
+//! |---|---|
+//! | x, v | position and velocity of a node |
+//! | u, u̇ | sliding coordinate of a visit: arc length of unstretched yarn that is at the node, and its rate |
+//! | Δu, r, l, d, w | of a segment: u₁ − u₀, x₁ − x₀, \|r\|, r/l, r/Δu |
+//! | σ | handedness of a stitch contact |
+//! | R, Y, B, ρ | yarn radius, Young's modulus, bending modulus, mass per length |
+//! | h | time step |
+
+mod assembly;
+mod bend;
+mod body;
+mod clearance;
+mod contact_length;
+mod curves;
+mod facts;
+mod friction;
+mod gravity;
+mod local;
+mod mass;
+mod material;
+mod model;
+mod noise;
+mod parallel;
+mod pin;
+mod rigid;
+mod scene;
+mod simulator;
+mod solver;
+mod step;
+mod stretch;
+mod wrap;
+
+pub use body::Body;
+pub use clearance::least_distance;
+pub use curves::curves;
+pub use facts::Facts;
+pub use material::{Material, MaterialError};
+pub use model::{Model, NetError};
+pub use scene::{Pin, Scene, SceneError};
+pub use simulator::{SettleGoal, SettleProgress, Settled, SimError, Simulator, StepReport};
+pub use solver::cholesky::SolveError;
+pub use step::Rejection;
+
+#[cfg(test)]
+mod testing;

@@ -1,0 +1,223 @@
+//! From elements to the linear system of a step.
+//!
+//! # Theory
+//! One linearly implicit step solves [(1 + hα) M + h²K + hβK_d] v₁ = M v₀ − h∇V + (h² + hβ) K_t v_rigid for the velocities
+//! v₁ at its end. K is the stiffness of all forces, K_d that of all but stretch (damped stretch makes the system ten times
+//! harder and brakes the fabric), K_t the part that is not blind to rotations (`rigid.rs`; for stretch without its β).
+//! Friction, bodies and pins touch single nodes and are added by the step itself.
+//!
+//! # Practice
+//! Elements are evaluated in parallel, a batch at a time, and added up in their order, so the sums have the same bits
+//! whatever the number of threads.
+
+use crate::gravity::Gravity;
+use crate::local::{Element, point};
+use crate::mass::mass;
+use crate::material::Material;
+use crate::model::{BendTerm, FROZEN, Model, SegmentTerm, Stencil, WrapTerm};
+use crate::solver::matrix::BlockMatrix;
+use glam::DVec3;
+use rayon::prelude::*;
+use stitch_mesh::ids::VisitId;
+use stitch_mesh::yarn_net::YarnState;
+
+/// Elements evaluated before they are added up: enough to share out, few enough to stay in the cache.
+const BATCH: usize = 2048;
+
+/// Where a step starts from.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a> {
+    pub material: &'a Material,
+    pub state: &'a YarnState,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: DVec3,
+    /// ω of the rigid motion [rad/s].
+    pub omega: DVec3,
+    /// h [s].
+    pub step: f64,
+}
+
+/// What an element adds to the system.
+struct Contribution<const K: usize, const N: usize> {
+    matrix: [[f64; N]; N],
+    rhs: [f64; N],
+    /// Force on its visits that counts for the normal force there [N].
+    pull: [DVec3; K],
+}
+
+/// Where the unknowns of a stencil are.
+#[derive(Clone, Copy, Debug)]
+struct Places<const K: usize> {
+    visits: [VisitId; K],
+    /// First unknown of each visit's node.
+    start: [u32; K],
+    /// Place of the sliding coordinate within its node, or [`FROZEN`].
+    sliding: [u32; K],
+    /// Place of the block (row a, column b) where node a ≥ node b.
+    block: [[u32; K]; K],
+}
+
+impl<const K: usize> Places<K> {
+    fn new(model: &Model, matrix: &BlockMatrix, stencil: &Stencil<K>) -> Self {
+        let node = stencil.nodes.map(|n| n.index());
+        let start = node.map(|n| model.start[n]);
+        let sliding = std::array::from_fn(|k| match model.sliding[stencil.visits[k].index()] {
+            FROZEN => FROZEN,
+            dof => dof - start[k],
+        });
+        let block = std::array::from_fn(|a| {
+            std::array::from_fn(|b| if node[a] < node[b] { 0 } else { matrix.block(node[a], node[b]) })
+        });
+        Self { visits: stencil.visits, start, sliding, block }
+    }
+
+    /// Place within its node of the unknown `i` (0, 1, 2: position, 3: sliding) of visit `k`.
+    fn unknown(&self, k: usize, i: usize) -> Option<u32> {
+        match (i, self.sliding[k]) {
+            (3, FROZEN) => None,
+            (3, place) => Some(place),
+            _ => Some(i as u32),
+        }
+    }
+}
+
+/// The linear system of a step.
+pub(crate) struct System {
+    pub matrix: BlockMatrix,
+    /// Right-hand side [dof_count] [kg m/s].
+    pub rhs: Vec<f64>,
+    /// Stretch and bend force on each visit, [visit_count] [N].
+    pub pull: Vec<DVec3>,
+    segments: Vec<Places<2>>,
+    bends: Vec<Places<3>>,
+    wraps: Vec<Places<4>>,
+}
+
+impl System {
+    /// An empty system for `model`.
+    pub fn new(model: &Model) -> Self {
+        let matrix = BlockMatrix::new(model);
+        Self {
+            segments: model.segments.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
+            bends: model.bends.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
+            wraps: model.wraps.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
+            rhs: vec![0.0; model.dof_count()],
+            pull: vec![DVec3::ZERO; model.sliding.len()],
+            matrix,
+        }
+    }
+
+    /// Fills the system with every force of the yarn itself.
+    pub fn assemble(&mut self, model: &Model, start: Start) {
+        self.matrix.clear();
+        self.rhs.fill(0.0);
+        self.pull.fill(DVec3::ZERO);
+        let Self { matrix, rhs, pull, .. } = self;
+        let mut sum = Sum { matrix, rhs, pull };
+        sum.add(&model.segments, &self.segments, |term| segment(term, start));
+        sum.add(&model.bends, &self.bends, |term| bend(term, start));
+        sum.add(&model.wraps, &self.wraps, |term| wrap(term, start));
+    }
+}
+
+/// The parts of a system that elements are added to.
+struct Sum<'a> {
+    matrix: &'a mut BlockMatrix,
+    rhs: &'a mut [f64],
+    pull: &'a mut [DVec3],
+}
+
+impl Sum<'_> {
+    fn add<T: Sync, const K: usize, const N: usize>(
+        &mut self,
+        terms: &[T],
+        places: &[Places<K>],
+        evaluate: impl Fn(&T) -> Contribution<K, N> + Sync,
+    ) {
+        let mut batch = Vec::with_capacity(BATCH.min(terms.len()));
+        for (terms, places) in terms.chunks(BATCH).zip(places.chunks(BATCH)) {
+            terms.par_iter().with_min_len(BATCH / 16).map(&evaluate).collect_into_vec(&mut batch);
+            for (contribution, places) in batch.iter().zip(places) {
+                self.scatter(contribution, places);
+            }
+        }
+    }
+
+    fn scatter<const K: usize, const N: usize>(&mut self, add: &Contribution<K, N>, places: &Places<K>) {
+        let size = N / K;
+        for b in 0..K {
+            self.pull[places.visits[b].index()] += add.pull[b];
+            for j in 0..size {
+                let Some(column) = places.unknown(b, j) else { continue };
+                self.rhs[(places.start[b] + column) as usize] += add.rhs[size * b + j];
+                for a in (0..K).filter(|a| places.start[*a] >= places.start[b]) {
+                    for i in 0..size {
+                        let Some(row) = places.unknown(a, i) else { continue };
+                        if places.start[a] == places.start[b] && row < column {
+                            continue;
+                        }
+                        let value = add.matrix[size * a + i][size * b + j];
+                        self.matrix.add(places.start[b], places.block[a][b], row, column, value);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Mass, stretch, gravity, and contact length or parallel contact.
+fn segment(
+    term: &SegmentTerm,
+    Start { material, state, gravity, omega, step: h }: Start,
+) -> Contribution<2, 8> {
+    let q: [f64; 8] = term.stencil.coordinates(state);
+    let v: [f64; 8] = term.stencil.velocities(state);
+    let mass = mass(material.density, &q);
+    let stretch = term.stretch(material);
+    let stretched = stretch.expand(&q);
+    let spin = stretch.spin(&q, omega);
+    let weight = Gravity { weight: material.density * gravity }.expand(&q);
+    let spacing = term.spacing(material).expand(&[q[3], q[7]]);
+
+    let by_mass = 1.0 + h * material.mass_damping;
+    let mut out = Contribution { matrix: [[0.0; 8]; 8], rhs: [0.0; 8], pull: [DVec3::ZERO; 2] };
+    for i in 0..8 {
+        for j in 0..8 {
+            out.matrix[i][j] = by_mass * mass[i][j] + h * h * stretched.hessian[i][j];
+            out.rhs[i] += mass[i][j] * v[j];
+        }
+        out.rhs[i] += h * (h * spin[i] - stretched.gradient[i] - weight.gradient[i]);
+    }
+    let damped = h * (h + material.stiffness_damping);
+    for i in 0..2 {
+        for j in 0..2 {
+            out.matrix[4 * i + 3][4 * j + 3] += damped * spacing.hessian[i][j];
+        }
+        out.rhs[4 * i + 3] -= h * spacing.gradient[i];
+    }
+    out.pull = [0, 4].map(|at| -point(&stretched.gradient, at));
+    out
+}
+
+fn bend(term: &BendTerm, Start { material, state, omega, step: h, .. }: Start) -> Contribution<3, 12> {
+    let q = term.stencil.coordinates(state);
+    let bend = term.bend(material);
+    let bent = bend.expand(&q);
+    let spin = bend.spin(&q, omega);
+    let damped = h * (h + material.stiffness_damping);
+    Contribution {
+        matrix: bent.hessian.map(|row| row.map(|k| damped * k)),
+        rhs: std::array::from_fn(|i| damped * spin[i] - h * bent.gradient[i]),
+        pull: [0, 4, 8].map(|at| -point(&bent.gradient, at)),
+    }
+}
+
+fn wrap(term: &WrapTerm, Start { material, state, step: h, .. }: Start) -> Contribution<4, 12> {
+    let wrapped = term.wrap(material).expand(&term.stencil.points(state));
+    let damped = h * (h + material.stiffness_damping);
+    Contribution {
+        matrix: wrapped.hessian.map(|row| row.map(|k| damped * k)),
+        rhs: wrapped.gradient.map(|g| -h * g),
+        pull: [DVec3::ZERO; 4],
+    }
+}

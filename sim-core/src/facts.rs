@@ -1,0 +1,51 @@
+//! Figures that tell how a simulation is doing.
+
+use crate::clearance::least_distance;
+use crate::curves::curves;
+use crate::material::Material;
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::step::clearance;
+use serde::{Deserialize, Serialize};
+use stitch_mesh::yarn_net::YarnState;
+
+/// Figures of a simulation.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Facts {
+    /// Which solver: "cpu".
+    pub solver: String,
+    /// Steps taken.
+    pub steps: u64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// Kinetic energy [J].
+    pub kinetic_j: f64,
+    /// Largest strain of a segment: 0 unstretched, 0.01 one percent longer than its yarn.
+    pub max_stretch: f64,
+    /// Least distance of two yarns' centre lines over their drawn diameter; 1 and more: no overlap.
+    pub min_yarn_distance_over_diameter: f64,
+    /// How deep the yarn is in a body at the worst place [mm].
+    pub max_penetration_mm: f64,
+    /// Steps thrown away and taken again with half the time step.
+    pub rejected_steps: u64,
+}
+
+/// The figures that follow from a state; the others stay empty.
+pub(crate) fn measure(model: &Model, material: &Material, scene: &Scene, state: &YarnState) -> Facts {
+    let strain = |q: [f64; 8]| {
+        let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
+        r.length() / (q[7] - q[3]) - 1.0
+    };
+    let strains = model.segments.iter().map(|s| strain(s.stencil.coordinates(state)));
+    let depth = |x: &glam::DVec3| {
+        let gaps = scene.bodies.iter().map(|b| clearance(material) - b.distance(*x).0);
+        gaps.fold(0.0, f64::max)
+    };
+    let drawn = curves(&model.net, state, material.drawn_radius);
+    Facts {
+        max_stretch: strains.fold(0.0, f64::max),
+        min_yarn_distance_over_diameter: least_distance(&drawn) / (2.0 * material.drawn_radius),
+        max_penetration_mm: 1e3 * state.position.iter().map(depth).fold(0.0, f64::max),
+        ..Facts::default()
+    }
+}

@@ -1,0 +1,292 @@
+//! The simulator: a net, its state, and time going by.
+
+use crate::facts::{self, Facts};
+use crate::material::{Material, MaterialError};
+use crate::model::{Model, NetError};
+use crate::noise::unit_hash;
+use crate::scene::{Scene, SceneError};
+use crate::solver::cholesky::SolveError;
+use crate::step::{Rejection, Stepper, Stuck};
+use glam::DVec3;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use stitch_mesh::yarn_net::{YarnNet, YarnState};
+
+/// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
+/// it curls would hang on rounding.
+const NOISE: f64 = 1e-6;
+
+/// Halvings of the time step before a simulation is given up; the last is a thousandth of the first.
+const MOST_HALVINGS: i32 = 10;
+
+/// Steps between two looks at the kinetic energy while settling.
+const SETTLE_INTERVAL: u64 = 10;
+
+/// Why there is no simulation, or no further step of it.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum SimError {
+    /// The net.
+    #[error(transparent)]
+    Net(#[from] NetError),
+    /// The material.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    /// The scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The state does not belong to the net.
+    #[error(
+        "the state has {positions} positions and {slidings} sliding coordinates, the net has {nodes} nodes and {visits} visits"
+    )]
+    StateShape {
+        /// Positions in the state.
+        positions: usize,
+        /// Sliding coordinates in the state.
+        slidings: usize,
+        /// Nodes of the net.
+        nodes: usize,
+        /// Visits of the net.
+        visits: usize,
+    },
+    /// The state has a number that is infinite or NaN.
+    #[error("the state is not finite")]
+    StateNotFinite,
+    /// A yarn runs backwards or has no length between two visits of the state.
+    #[error("the state leaves no yarn on segment {0}")]
+    StateWithoutYarn(usize),
+    /// The solver could not be set up.
+    #[error(transparent)]
+    Solver(#[from] SolveError),
+    /// No time step is small enough. The state is that of the last good step.
+    #[error("stuck at {time_s:.3} s: even a step of {step_s:.1e} s fails, because {cause}")]
+    Stuck {
+        /// Simulated time [s].
+        time_s: f64,
+        /// The smallest step tried [s].
+        step_s: f64,
+        /// What was wrong with it.
+        cause: Rejection,
+    },
+}
+
+/// One step that went well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// Its length [s].
+    pub time_step: f64,
+    /// Attempts thrown away before.
+    pub rejected: u64,
+}
+
+/// How far settling has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SettleProgress {
+    /// Simulated time since the start [s].
+    pub time_s: f64,
+    /// Root-mean-square speed of the yarn [m/s].
+    pub speed: f64,
+}
+
+/// When a fabric counts as settled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SettleGoal {
+    /// Root-mean-square speed of the yarn to come under [m/s].
+    pub speed: f64,
+    /// Simulated time after which to stop anyway [s].
+    pub time_limit_s: f64,
+}
+
+/// How settling ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settled {
+    /// The fabric is as good as still.
+    Still,
+    /// The time limit came first.
+    TimeLimit,
+    /// The caller stopped it.
+    Interrupted,
+}
+
+/// A running simulation. Owns all that it needs.
+pub struct Simulator {
+    stepper: Stepper,
+    material: Material,
+    scene: Scene,
+    now: Stuck,
+    /// Step to try next [s].
+    step: f64,
+    time: f64,
+    steps: u64,
+    rejected: u64,
+}
+
+impl Simulator {
+    /// A simulation of `net` from `state`, which may be its laid state. Yarns stick where they are.
+    pub fn new(
+        net: &Arc<YarnNet>,
+        material: Material,
+        scene: Scene,
+        mut state: YarnState,
+    ) -> Result<Self, SimError> {
+        material.validate()?;
+        scene.validate(net.nodes.len())?;
+        let model = Model::new(Arc::clone(net))?;
+        check_state(&model, &state)?;
+        for (i, x) in state.position.iter_mut().enumerate() {
+            let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
+            *x += DVec3::new(noise(0), noise(1), noise(2));
+        }
+        let stepper = Stepper::new(model, &material)?;
+        let anchor = state.sliding.clone();
+        let step = scene.time_step;
+        Ok(Self {
+            stepper,
+            material,
+            scene,
+            now: Stuck { state, anchor },
+            step,
+            time: 0.0,
+            steps: 0,
+            rejected: 0,
+        })
+    }
+
+    /// Goes on by one step: of the scene's time step, or less where that goes wrong. After an error the state is
+    /// that of the last good step.
+    pub fn step(&mut self) -> Result<StepReport, SimError> {
+        let smallest = self.scene.time_step * 0.5f64.powi(MOST_HALVINGS);
+        let mut rejected = 0;
+        loop {
+            match self.stepper.step(&self.now, &self.material, &self.scene, self.step) {
+                Ok(next) => {
+                    self.now = next;
+                    let report = StepReport { time_step: self.step, rejected };
+                    self.time += self.step;
+                    self.steps += 1;
+                    self.step = self.scene.time_step.min(2.0 * self.step);
+                    return Ok(report);
+                }
+                Err(cause) => {
+                    rejected += 1;
+                    self.rejected += 1;
+                    tracing::debug!(time_s = self.time, step_s = self.step, %cause, "step rejected");
+                    if self.step <= smallest {
+                        let step_s = self.step;
+                        self.step = self.scene.time_step;
+                        return Err(SimError::Stuck { time_s: self.time, step_s, cause });
+                    }
+                    self.step *= 0.5;
+                }
+            }
+        }
+    }
+
+    /// Steps until the fabric is as good as still, the time limit, or until `progress` breaks off.
+    pub fn settle(
+        &mut self,
+        goal: SettleGoal,
+        progress: &mut dyn FnMut(SettleProgress) -> ControlFlow<()>,
+    ) -> Result<Settled, SimError> {
+        let start = self.time;
+        let mass: f64 = self.stepper.model.node_masses(&self.material).iter().sum();
+        loop {
+            self.step()?;
+            let time_s = self.time - start;
+            if self.steps.is_multiple_of(SETTLE_INTERVAL) {
+                let speed = (2.0 * self.kinetic_energy() / mass).sqrt();
+                if progress(SettleProgress { time_s, speed }).is_break() {
+                    return Ok(Settled::Interrupted);
+                }
+                if speed < goal.speed {
+                    return Ok(Settled::Still);
+                }
+            }
+            if time_s >= goal.time_limit_s {
+                return Ok(Settled::TimeLimit);
+            }
+        }
+    }
+
+    /// The net.
+    pub fn net(&self) -> &Arc<YarnNet> {
+        &self.stepper.model.net
+    }
+
+    /// The elements of the net.
+    pub fn model(&self) -> &Model {
+        &self.stepper.model
+    }
+
+    /// The state now.
+    pub fn state(&self) -> &YarnState {
+        &self.now.state
+    }
+
+    /// The material.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Simulated time [s].
+    pub fn time_s(&self) -> f64 {
+        self.time
+    }
+
+    /// Changes gravity, bodies, pins or time step; refused as a whole if anything in it makes no sense.
+    pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimError> {
+        scene.validate(self.net().nodes.len())?;
+        self.step = scene.time_step;
+        self.scene = scene;
+        Ok(())
+    }
+
+    /// Changes the material; refused as a whole if anything in it makes no sense.
+    pub fn set_material(&mut self, material: Material) -> Result<(), SimError> {
+        material.validate()?;
+        self.stepper.set_material(&material);
+        self.material = material;
+        Ok(())
+    }
+
+    /// Kinetic energy [J].
+    pub fn kinetic_energy(&self) -> f64 {
+        self.stepper.model.kinetic_energy(&self.material, self.state())
+    }
+
+    /// What there is to report of the simulation so far. Looks for the closest yarns, which takes about as long as a step.
+    pub fn facts(&self) -> Facts {
+        Facts {
+            solver: "cpu".to_owned(),
+            steps: self.steps,
+            time_s: self.time,
+            kinetic_j: self.kinetic_energy(),
+            rejected_steps: self.rejected,
+            ..facts::measure(&self.stepper.model, &self.material, &self.scene, self.state())
+        }
+    }
+}
+
+fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {
+    let net = &model.net;
+    if !state.fits(net) {
+        return Err(SimError::StateShape {
+            positions: state.position.len(),
+            slidings: state.sliding.len(),
+            nodes: net.nodes.len(),
+            visits: net.visits.len(),
+        });
+    }
+    if !state.is_finite() {
+        return Err(SimError::StateNotFinite);
+    }
+    let yarn = |q: [f64; 8]| q[7] - q[3];
+    match model.segments.iter().position(|s| yarn(s.stencil.coordinates(state)) <= 0.0) {
+        Some(segment) => Err(SimError::StateWithoutYarn(segment)),
+        None => Ok(()),
+    }
+}

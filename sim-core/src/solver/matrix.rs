@@ -1,0 +1,96 @@
+//! A sparse symmetric matrix with a fixed pattern of node blocks.
+//!
+//! Only the lower triangle is stored, by columns, as the factorisation wants it. Node blocks are full, so the place of an
+//! entry follows from the place of its block: in the first column of node J the rows of the blocks I ≥ J follow each other,
+//! and each further column of J begins one row later. An entry (i of I, j of J) therefore lies at
+//! `column(J, j) + block(I, J) + i − j`.
+
+use crate::model::Model;
+
+/// The lower triangle of a symmetric matrix.
+#[derive(Clone, Debug)]
+pub(crate) struct BlockMatrix {
+    /// First unknown of each node, [node_count + 1].
+    start: Vec<u32>,
+    /// First entry of each column, [dof_count + 1].
+    pub column: Vec<u32>,
+    /// Row of each entry.
+    pub row: Vec<u32>,
+    /// Each entry.
+    pub value: Vec<f64>,
+    /// Blocks under the diagonal of each node, first of them, [node_count + 1].
+    first_block: Vec<u32>,
+    /// Node of each block's rows, ascending within a column.
+    block_node: Vec<u32>,
+    /// Place of each block in the first column of its node.
+    block_offset: Vec<u32>,
+}
+
+impl BlockMatrix {
+    /// A zero matrix with the pattern of `model`.
+    pub fn new(model: &Model) -> Self {
+        let start = model.start.clone();
+        let mut matrix = Self {
+            column: vec![0],
+            row: Vec::new(),
+            value: Vec::new(),
+            first_block: vec![0],
+            block_node: Vec::new(),
+            block_offset: Vec::new(),
+            start,
+        };
+        for (node, rows) in model.neighbours.iter().enumerate() {
+            let mut offset = 0;
+            for &below in rows {
+                matrix.block_node.push(below);
+                matrix.block_offset.push(offset);
+                offset += matrix.size(below as usize);
+            }
+            matrix.first_block.push(matrix.block_node.len() as u32);
+            for first_row in matrix.start[node]..matrix.start[node + 1] {
+                matrix.row.extend(first_row..matrix.start[node + 1]);
+                for &below in &rows[1..] {
+                    matrix.row.extend(matrix.start[below as usize]..matrix.start[below as usize + 1]);
+                }
+                matrix.column.push(matrix.row.len() as u32);
+            }
+        }
+        matrix.value = vec![0.0; matrix.row.len()];
+        matrix
+    }
+
+    /// Number of unknowns of a node.
+    fn size(&self, node: usize) -> u32 {
+        self.start[node + 1] - self.start[node]
+    }
+
+    /// Number of unknowns.
+    pub fn dof_count(&self) -> usize {
+        self.column.len() - 1
+    }
+
+    /// Place of the block (`row`, `column`), `row` ≥ `column`, in the first column of its node. Part of the pattern, or it
+    /// is a mistake in the model.
+    pub fn block(&self, row: usize, column: usize) -> u32 {
+        let blocks = self.first_block[column] as usize..self.first_block[column + 1] as usize;
+        let at = self.block_node[blocks.clone()].partition_point(|node| (*node as usize) < row);
+        debug_assert_eq!(self.block_node[blocks.start + at] as usize, row);
+        self.block_offset[blocks.start + at]
+    }
+
+    /// Adds to the entry (i, j) of the block at `block` of the node whose unknowns start at `start`.
+    #[inline]
+    pub fn add(&mut self, start: u32, block: u32, i: u32, j: u32, value: f64) {
+        self.value[(self.column[(start + j) as usize] + block + i - j) as usize] += value;
+    }
+
+    /// Adds to a diagonal entry.
+    pub fn add_diagonal(&mut self, dof: usize, value: f64) {
+        self.value[self.column[dof] as usize] += value;
+    }
+
+    /// Sets every entry to zero.
+    pub fn clear(&mut self) {
+        self.value.fill(0.0);
+    }
+}

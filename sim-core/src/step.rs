@@ -1,0 +1,199 @@
+//! One step of the simulation, as a list of stages.
+//!
+//! # Theory
+//! Cirio et al. integrate with linearised backward Euler (one Newton step a time step), which at 5 ms is stable and needs
+//! no line search. See `assembly.rs` for the system.
+//!
+//! # Practice
+//! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
+//! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
+//! yarn, its ends move against each other by more than half its length. That happens while a net finds its first
+//! shape, if ever.
+
+use crate::assembly::{Start, System};
+use crate::body::BodyContact;
+use crate::friction::{FrictionSpring, normal_forces};
+use crate::local::Element;
+use crate::material::Material;
+use crate::model::{FROZEN, Model};
+use crate::rigid;
+use crate::scene::Scene;
+use crate::solver::cholesky::{Cholesky, SolveError};
+use glam::DVec3;
+use stitch_mesh::yarn_net::YarnState;
+
+/// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
+/// weight, at 1e4 a corner that touches down alone upsets the conditioning.
+const BODY_STIFFNESS: f64 = 100.0;
+
+/// Why a step was thrown away.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Rejection {
+    /// The system could not be solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The new state is not finite.
+    #[error("the new state is not finite")]
+    NotFinite,
+    /// A segment would lose more than half of its yarn.
+    #[error("segment {0} loses more than half of its yarn")]
+    Shrinking(usize),
+    /// The ends of a segment would move against each other by more than half its length.
+    #[error("the ends of segment {0} move too far against each other")]
+    Leaping(usize),
+}
+
+/// The pieces of a simulator that a step works on.
+pub(crate) struct Stepper {
+    pub model: Model,
+    system: System,
+    cholesky: Cholesky,
+    /// Mass of the yarn around each node [node_count] [kg].
+    masses: Vec<f64>,
+}
+
+/// A state and where its yarns stick.
+#[derive(Clone)]
+pub(crate) struct Stuck {
+    pub state: YarnState,
+    /// ū of each visit, [visit_count] [m].
+    pub anchor: Vec<f64>,
+}
+
+impl Stepper {
+    pub fn new(model: Model, material: &Material) -> Result<Self, SolveError> {
+        let system = System::new(&model);
+        let cholesky = Cholesky::new(&model, &system.matrix)?;
+        let masses = model.node_masses(material);
+        Ok(Self { model, system, cholesky, masses })
+    }
+
+    pub fn set_material(&mut self, material: &Material) {
+        self.masses = self.model.node_masses(material);
+    }
+
+    /// The state after a step of `h` [s] from `now`.
+    pub fn step(
+        &mut self,
+        now: &Stuck,
+        material: &Material,
+        scene: &Scene,
+        h: f64,
+    ) -> Result<Stuck, Rejection> {
+        let state = &now.state;
+        let omega = rigid::rotation(state, &self.masses);
+        self.system.assemble(&self.model, Start { material, state, gravity: scene.gravity, omega, step: h });
+        let anchor = self.add_friction(now, material, h);
+        self.add_bodies(state, material, scene, h);
+        self.add_pins(state, scene, h);
+        self.cholesky.solve(&self.system.matrix, &mut self.system.rhs)?;
+        let next = self.advanced(state, h);
+        self.judge(state, &next)?;
+        Ok(Stuck { state: next, anchor })
+    }
+
+    /// Normal forces from the forces just assembled, and the friction springs that they carry. Gives the moved anchors.
+    fn add_friction(&mut self, now: &Stuck, material: &Material, h: f64) -> Vec<f64> {
+        let mut anchor = now.anchor.clone();
+        let mut pull = Vec::new();
+        for node in self.model.net.nodes.iter().filter(|n| n.visits.len() > 1) {
+            pull.clear();
+            pull.extend(node.visits.iter().map(|v| self.system.pull[v.index()]));
+            for (visit, press) in node.visits.iter().zip(normal_forces(&pull, material.cohesion)) {
+                let v = visit.index();
+                let (u, rate) = (now.state.sliding[v], now.state.sliding_velocity[v]);
+                let spring = FrictionSpring::new(anchor[v], u, rate, press, h, material);
+                anchor[v] = spring.anchor;
+                let dof = self.model.sliding[v] as usize;
+                self.system.matrix.add_diagonal(dof, h * h * spring.stiffness);
+                self.system.rhs[dof] -= h * spring.stiffness * (u - spring.anchor);
+            }
+        }
+        anchor
+    }
+
+    fn add_bodies(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) {
+        for &body in &scene.bodies {
+            for node in 0..state.position.len() {
+                let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
+                let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
+                let contact = BodyContact { body, clearance: clearance(material), stiffness };
+                let (gap, normal) = contact.gap(x);
+                if gap + h * v.dot(normal).min(0.0) >= 0.0 {
+                    continue;
+                }
+                self.add_point(node, &contact, x, h);
+                let drag = h * contact.drag(x, v, mass, h);
+                let n = normal.to_array();
+                self.add_block(node, |i, j| drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
+            }
+        }
+    }
+
+    fn add_pins(&mut self, state: &YarnState, scene: &Scene, h: f64) {
+        for pin in &scene.pins {
+            self.add_point(pin.node as usize, pin, state.position[pin.node as usize], h);
+        }
+    }
+
+    /// Adds a force on the position of one node.
+    fn add_point(&mut self, node: usize, element: &impl Element<3>, x: DVec3, h: f64) {
+        let local = element.expand(&x.to_array());
+        for i in 0..3 {
+            self.system.rhs[self.model.start[node] as usize + i] -= h * local.gradient[i];
+        }
+        self.add_block(node, |i, j| h * h * local.hessian[i][j]);
+    }
+
+    /// Adds a 3 × 3 block to the matrix.
+    fn add_block(&mut self, node: usize, entry: impl Fn(usize, usize) -> f64) {
+        for j in 0..3 {
+            for i in j..3 {
+                self.system.matrix.add(self.model.start[node], 0, i as u32, j as u32, entry(i, j));
+            }
+        }
+    }
+
+    /// The state that the solved velocities lead to.
+    fn advanced(&self, state: &YarnState, h: f64) -> YarnState {
+        let v = &self.system.rhs;
+        let mut next = state.clone();
+        for (node, &start) in self.model.start[..state.position.len()].iter().enumerate() {
+            let start = start as usize;
+            next.velocity[node] = DVec3::new(v[start], v[start + 1], v[start + 2]);
+            next.position[node] += h * next.velocity[node];
+        }
+        for (visit, &dof) in self.model.sliding.iter().enumerate() {
+            let rate = if dof == FROZEN { 0.0 } else { v[dof as usize] };
+            next.sliding_velocity[visit] = rate;
+            next.sliding[visit] += h * rate;
+        }
+        next
+    }
+
+    /// Whether `next` may follow `state`.
+    fn judge(&self, state: &YarnState, next: &YarnState) -> Result<(), Rejection> {
+        if !next.is_finite() {
+            return Err(Rejection::NotFinite);
+        }
+        for (i, term) in self.model.segments.iter().enumerate() {
+            let [a, b] = term.stencil.nodes.map(|n| n.index());
+            let [ua, ub] = term.stencil.visits.map(|v| v.index());
+            let yarn = |s: &YarnState| s.sliding[ub] + term.stencil.turn[1] - s.sliding[ua];
+            let span = |s: &YarnState| s.position[b] - s.position[a];
+            if yarn(next) < 0.5 * yarn(state) {
+                return Err(Rejection::Shrinking(i));
+            }
+            let length = span(state).length().max(yarn(state));
+            if span(next).distance(span(state)) > 0.5 * length {
+                return Err(Rejection::Leaping(i));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Distance that nodes keep from bodies: two yarns lie on each other at a node [m].
+pub(crate) fn clearance(material: &Material) -> f64 {
+    2.0 * material.drawn_radius
+}

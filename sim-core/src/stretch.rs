@@ -1,0 +1,138 @@
+//! Stretch of one yarn segment.
+//!
+//! # Theory
+//! Cirio et al. 2014 §4.2 (woven cloth), used unchanged for knits. With Δu = u₁ − u₀, r = x₁ − x₀, l = |r|, d = r/l,
+//! w = r/Δu and k_s = YπR² [N]:
+//! - energy V = k_s/2 Δu (|w| − 1)² = k_s/2 (l²/Δu − 2l + Δu) [J];
+//! - ∂V/∂r = k_s (r/Δu − d), ∂V/∂Δu = k_s/2 (1 − |w|²) [N];
+//! - Hessian in (d, Δu), exact and of rank one: k_s/Δu (d, −|w|)(d, −|w|)ᵀ; across d, k_s (1/Δu − 1/l) (I − d dᵀ), which
+//!   is negative in a compressed segment and then left out.
+//!
+//! # Differences from the paper
+//! The paper differentiates in full. Leaving out compression across d is what keeps the matrix definite: a slack yarn
+//! would buckle sideways, which the bending stiffness resists anyway.
+
+use crate::local::{Element, LEAST_LENGTH, Local, point, put};
+use glam::DVec3;
+
+/// Stretch of a segment over (x₀, u₀, x₁, u₁).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    /// k_s = YπR² [N].
+    pub stiffness: f64,
+}
+
+impl Stretch {
+    /// (r, l, Δu).
+    fn measure(q: &[f64; 8]) -> (DVec3, f64, f64) {
+        let r = point(q, 4) - point(q, 0);
+        (r, r.length().max(LEAST_LENGTH), (q[7] - q[3]).max(LEAST_LENGTH))
+    }
+
+    /// k_s (1/Δu − 1/l)₊: stiffness of a taut segment across its own direction [N/m].
+    fn across(&self, l: f64, du: f64) -> f64 {
+        (self.stiffness * (1.0 / du - 1.0 / l)).max(0.0)
+    }
+}
+
+impl Element<8> for Stretch {
+    fn energy(&self, q: &[f64; 8]) -> f64 {
+        let (_, l, du) = Self::measure(q);
+        0.5 * self.stiffness * (l - du).powi(2) / du
+    }
+
+    fn expand(&self, q: &[f64; 8]) -> Local<8> {
+        let (r, l, du) = Self::measure(q);
+        let d = r / l;
+        let w = l / du;
+        let mut local = Local::zero();
+        local.energy = self.energy(q);
+
+        let by_r = self.stiffness * (w - 1.0) * d;
+        let by_du = 0.5 * self.stiffness * (1.0 - w * w);
+        put(&mut local.gradient, 0, -by_r);
+        put(&mut local.gradient, 4, by_r);
+        local.gradient[3] = -by_du;
+        local.gradient[7] = by_du;
+
+        let mut along = [0.0; 8];
+        put(&mut along, 0, -d);
+        put(&mut along, 4, d);
+        along[3] = w;
+        along[7] = -w;
+        local.add_outer(self.stiffness / du, &along);
+
+        let across = self.across(l, du);
+        let d = d.to_array();
+        for i in 0..3 {
+            for j in 0..3 {
+                let p = across * (f64::from(u8::from(i == j)) - d[i] * d[j]);
+                local.hessian[i][j] += p;
+                local.hessian[4 + i][4 + j] += p;
+                local.hessian[i][4 + j] -= p;
+                local.hessian[4 + i][j] -= p;
+            }
+        }
+        local
+    }
+
+    // A rotation moves the second end against the first by ω × r, which is all across d.
+    fn spin(&self, q: &[f64; 8], omega: DVec3) -> [f64; 8] {
+        let (r, l, du) = Self::measure(q);
+        let force = self.across(l, du) * omega.cross(r);
+        let mut out = [0.0; 8];
+        put(&mut out, 0, -force);
+        put(&mut out, 4, force);
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::finite_difference::{check_element, check_exact_hessian, samples};
+
+    const STRETCH: Stretch = Stretch { stiffness: 17.7 };
+
+    /// Segments of 0.01 mm to 0.1 m, compressed or stretched.
+    fn cases(ratio: std::ops::Range<f64>) -> impl Iterator<Item = [f64; 8]> {
+        samples::<8>(60).enumerate().map(move |(i, s)| {
+            let scale = 10f64.powi(i as i32 % 5 - 5);
+            let mut q = s.map(|x| x * scale);
+            let l = point(&q, 4).distance(point(&q, 0));
+            q[7] = q[3] + l / (ratio.start + (ratio.end - ratio.start) * (0.5 + 0.5 * s[7]));
+            q
+        })
+    }
+
+    #[test]
+    fn derivatives() {
+        for q in cases(0.5..1.8) {
+            check_element(&STRETCH, &q);
+        }
+    }
+
+    #[test]
+    fn hessian_is_exact_when_taut() {
+        for q in cases(1.01..1.8) {
+            check_exact_hessian(&STRETCH, &q);
+        }
+    }
+
+    #[test]
+    fn spin_is_the_stiffness_on_a_rotation() {
+        let omega = DVec3::new(0.3, -2.0, 1.1);
+        for q in cases(1.01..1.8) {
+            crate::testing::finite_difference::check_spin(&STRETCH, &q, omega, [0, 4]);
+        }
+    }
+
+    #[test]
+    fn coincident_points_are_finite() {
+        for q in [[0.0; 8], [1.0; 8], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5]] {
+            let local = STRETCH.expand(&q);
+            assert!(local.energy.is_finite() && local.gradient.iter().all(|g| g.is_finite()));
+            assert!(local.hessian.as_flattened().iter().all(|h| h.is_finite()));
+        }
+    }
+}

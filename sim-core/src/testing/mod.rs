@@ -1,0 +1,12 @@
+//! What the tests share.
+
+pub(crate) mod finite_difference;
+
+use crate::model::Model;
+use std::sync::Arc;
+use stitch_mesh::{lay::lay, pieces::rectangle, tessellate::StitchSize};
+
+/// The model of a piece of stockinette with loops of 3 mm.
+pub(crate) fn swatch_model(wide: usize, high: usize) -> Model {
+    Model::new(Arc::new(lay(&rectangle(wide, high, StitchSize::of_width(3e-3)).unwrap()))).unwrap()
+}
