@@ -33,7 +33,7 @@ fn line_vertex(
     if corner >= 2u {
         clip = b;
     }
-    let offset = (across + outwards) * width / frame.size * clip.w;
+    let offset = (across + outwards) * width * frame.supersampling / frame.size * clip.w;
     let depth = frame.near / (1.0 - FORWARD);
     return Corner(vec4f(clip.xy + offset, min(depth, clip.w), clip.w), color);
 }
