@@ -320,7 +320,7 @@ mod tests {
         let half = (camera.fov / 2.0).tan();
         for (axis, edge) in [(up, half), (right, 1.5 * half)] {
             for side in [-1.0, 1.0] {
-                assert!(scale(camera.target + axis * side * edge * 1.2, 0.19 * edge).is_none());
+                assert!(scale(camera.target + axis * side * edge * 1.2, 0.18 * edge).is_none());
                 assert!(scale(camera.target + axis * side * edge * 1.2, 0.21 * edge).is_some());
             }
         }

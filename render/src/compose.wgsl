@@ -30,7 +30,7 @@ fn background(uv: vec2f) -> vec3f {
 // Occlusion at a pixel of the scene, from the four half-resolution values around it that are about as far away.
 fn occlusion(pixel: vec2i) -> f32 {
     let d = textureLoad(depth, pixel, 0);
-    if d == 0.0 || frame.occlusion_radius == 0.0 {
+    if frame.occlusion_radius == 0.0 || d == 0.0 {
         return 1.0;
     }
     let here = frame.near / d;
@@ -54,12 +54,17 @@ fn occlusion(pixel: vec2i) -> f32 {
 // Linear up to the shoulder, then ever more slowly towards white.
 fn tone(color: vec3f) -> vec3f {
     let over = (color - SHOULDER) / (1.0 - SHOULDER);
-    return select(color, SHOULDER + (1.0 - SHOULDER) * (1.0 - exp(-over)), color > vec3f(SHOULDER));
+    return select(color, SHOULDER + (1.0 - SHOULDER) * over / (1.0 + over), color > vec3f(SHOULDER));
 }
 
 fn srgb(linear: vec3f) -> vec3f {
     let curve = 1.055 * pow(max(linear, vec3f(0.0)), vec3f(1.0 / 2.4)) - 0.055;
     return select(curve, 12.92 * linear, linear < vec3f(0.0031308));
+}
+
+// Half a step of eight bits up or down, so that the background shows no bands (Jimenez' interleaved gradient noise).
+fn dither(pixel: vec2f) -> f32 {
+    return (fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715)))) - 0.5) / 255.0;
 }
 
 @fragment
@@ -71,9 +76,12 @@ fn compose(in: Pixel) -> @location(0) vec4f {
         for (var x = 0; x < SUPERSAMPLING; x++) {
             let pixel = target_pixel * SUPERSAMPLING + vec2i(x, y);
             let color = textureLoad(scene, pixel, 0);
-            sum += vec4f(tone(color.rgb * occlusion(pixel)), color.a);
+            if color.a > 0.0 {
+                sum += vec4f(tone(color.rgb * occlusion(pixel)), color.a);
+            }
         }
     }
     sum /= f32(SUPERSAMPLING * SUPERSAMPLING);
-    return vec4f(srgb(sum.rgb + background(in.uv) * (1.0 - sum.a)), 1.0);
+    let picture = srgb(sum.rgb + background(in.uv) * (1.0 - sum.a));
+    return vec4f(picture + dither(in.clip.xy), 1.0);
 }

@@ -27,7 +27,9 @@ pub(crate) struct Frame {
     pub occlusion_radius: f32,
     /// Width of a texel of the shadow map [m]; 0 for no shadows.
     pub shadow_texel: f32,
-    pub padding: [f32; 2],
+    /// Pixels of the scene for one of the picture, along a side.
+    pub supersampling: f32,
+    pub padding: f32,
 }
 
 /// The WGSL of the block, which the other shaders start with.

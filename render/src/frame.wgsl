@@ -12,6 +12,7 @@ struct Frame {
     pixels_per_radian: f32,
     occlusion_radius: f32,
     shadow_texel: f32,
+    supersampling: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -11,7 +11,12 @@
 //! | colour, occlusion | compose over the background | picture | `compose` |
 //!
 //! [`Renderer`] owns what does not depend on the size of the picture, [`Viewport`] what does. The same code draws on
-//! screen (a viewport's colour texture is shown by the window) and into image files ([`render_image`]).
+//! screen (a viewport's picture is shown by the window) and into image files ([`render_image`]).
+//!
+//! A software adapter takes about as long as there are pixels. Where [`Gpu::is_software`], a window stays fluent by drawing
+//! into a viewport of half the width and height while something moves, and of full size when it has come to rest.
+
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets, as in [m]")]
 
 mod camera;
 mod compose;

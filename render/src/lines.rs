@@ -59,7 +59,7 @@ impl LinePipeline {
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             cull: None,
             target: Some(COLOR_FORMAT),
-            depth: Some(wgpu::CompareFunction::Greater),
+            depth: Some(wgpu::CompareFunction::GreaterEqual),
             samples,
         };
         Self(pipeline.build(device))

@@ -1,7 +1,8 @@
 // Lines of constant width on the screen: each a quad of two triangles that faces the eye.
 
-// Lines come forward by this part of their distance, so that they win over the surface they lie on.
-const FORWARD = 0.002;
+// Lines come forward by this part of their distance for each pixel of width and one more, so that they win over the
+// surface they lie on, and wide lines, which mark something, over narrow ones.
+const FORWARD = 0.0007;
 
 struct Corner {
     @builtin(position) clip: vec4f,
@@ -33,8 +34,8 @@ fn line_vertex(
     if corner >= 2u {
         clip = b;
     }
-    let offset = (across + outwards) * width / frame.size * clip.w;
-    let depth = frame.near / (1.0 - FORWARD);
+    let offset = (across + outwards) * width * frame.supersampling / frame.size * clip.w;
+    let depth = frame.near / (1.0 - FORWARD * (1.0 + width));
     return Corner(vec4f(clip.xy + offset, min(depth, clip.w), clip.w), color);
 }
 

@@ -28,12 +28,15 @@ pub(crate) struct OcclusionTargets {
 }
 
 impl Occlusion {
-    pub fn new(device: &wgpu::Device, samples: u32) -> Self {
+    /// `pairs` taps are taken on either side of each point.
+    pub fn new(device: &wgpu::Device, samples: u32, pairs: u32) -> Self {
         let stages = wgpu::ShaderStages::FRAGMENT;
         let depth = texture(wgpu::TextureSampleType::Depth, samples > 1);
         let depth_layout = bind_group_layout(device, "depth", stages, &[UNIFORM, depth]);
         let coarse_layout = bind_group_layout(device, "coarse occlusion", stages, &[COARSE]);
-        let module = shader(device, "occlusion", &[depth_alias(samples), include_str!("occlusion.wgsl")]);
+        let constants = format!("const PAIRS = {pairs};");
+        let module =
+            shader(device, "occlusion", &[depth_alias(samples), &constants, include_str!("occlusion.wgsl")]);
         let pipeline = |fragment, layouts: &[&wgpu::BindGroupLayout]| {
             let pipeline = Pipeline {
                 label: fragment,

@@ -4,12 +4,11 @@
 // sum of a pair counts: on a plane, however tilted, one tap is as much nearer as the other is farther, so planes stay
 // bright without any normals.
 //
-// The type of `depth` is written in by occlusion.rs: multisampled or not.
+// The type of `depth`, multisampled or not, and PAIRS are written in by occlusion.rs.
 
 @group(0) @binding(1) var depth: DEPTH_TEXTURE;
 @group(1) @binding(0) var coarse: texture_2d<f32>;
 
-const PAIRS = 6;
 // How dark the deepest hollow is: never black, for light between yarns bounces on.
 const STRENGTH = 1.15;
 const DEEPEST = 0.38;

@@ -61,7 +61,7 @@ impl Renderer {
             samples,
             supersampling,
             shadow_map: ShadowMap::new(device, shadows),
-            occlusion: Occlusion::new(device, samples),
+            occlusion: Occlusion::new(device, samples, if quality == Quality::Still { 8 } else { 4 }),
             compose: Compose::new(device, samples, supersampling),
             surfaces: SurfacePipelines::new(device, &frame_layout, &lit_frame_layout, samples),
             lines: LinePipeline::new(device, &frame_layout, samples),
@@ -84,7 +84,10 @@ impl Renderer {
         let lights = Lights::around(camera);
         let frustum = scene.bounds().filter(|_| self.shadows);
         let frustum = frustum.map(|bounds| ShadowFrustum::new(bounds, camera, size.x / size.y, lights.key));
-        let frame = frame(camera, size, &lights, frustum.as_ref(), scene.yarn.radius() * OCCLUSION_REACH);
+        let frame = Frame {
+            supersampling: self.supersampling as f32,
+            ..frame(camera, size, &lights, frustum.as_ref(), scene.yarn.radius() * OCCLUSION_REACH)
+        };
         viewport.camera.write(&gpu.queue, &frame);
 
         if let Some(frustum) = &frustum {
@@ -136,6 +139,7 @@ fn frame(
         pixels_per_radian: camera.pixels_per_radian(size.y),
         occlusion_radius: occlusion,
         shadow_texel: shadows.map_or(0.0, ShadowFrustum::texel),
-        padding: [0.0; 2],
+        supersampling: 1.0,
+        padding: 0.0,
     }
 }

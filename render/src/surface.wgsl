@@ -24,7 +24,7 @@ fn surface_vertex(
 @fragment
 fn surface_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let normal = select(-1.0, 1.0, front) * normalize(in.normal);
-    let light = diffuse_light(normal, key_visibility(in.position, normal), 0.1);
+    let light = diffuse_light(light_cosines(normal), key_visibility(in.position, normal), 0.1);
     // What is not opaque shows the background, nothing else: only the rim of the ground is not.
     return vec4f(in.color * light * select(BACK, 1.0, front), 1.0) * in.opacity;
 }

@@ -1,8 +1,12 @@
 //! Yarn as lit wool, straight from its control points.
 //!
-//! The control points lie in a storage buffer; an instance is a span, and the vertex shader evaluates its spline. So an
-//! update uploads 32 bytes a control point, whatever the level of detail.
+//! The control points lie in a storage buffer, and the vertex shader evaluates the spline; the number of a vertex says
+//! which span, how far along and where around. So an update uploads 32 bytes a control point, whatever the level of detail.
+//! (An instance a span would be the obvious way, but a GPU, and a software one even more, fills badly with instances of
+//! two triangles.)
 
+#[cfg(test)]
+mod catmull_rom;
 mod level;
 mod transport;
 
@@ -10,7 +14,7 @@ use glam::Vec3;
 use stitch_mesh::yarn_curves::YarnCurves;
 use wgpu::CompareFunction::{Greater, Less};
 
-use self::level::{Batch, Chunk, Level, SAMPLES, SIDES, batches};
+use self::level::{Batch, Chunk, Level, RUN, SAMPLES, SIDES, SPAN_VERTICES, batches};
 use self::transport::{ControlPoint, END, lay_out};
 use crate::pipeline::{COLOR_FORMAT, Pipeline, STORAGE, bind_group, bind_group_layout, shader};
 use crate::scene::GrowingBuffer;
@@ -57,14 +61,14 @@ impl YarnMesh {
 
     /// Replaces the yarn.
     pub fn set(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
-        let mut points = Vec::with_capacity(yarn.curves.iter().map(|curve| curve.points.len() + 3).sum());
+        let mut points = Vec::with_capacity(yarn.curves.iter().map(|curve| curve.points.len() + 4).sum());
         let mut curves = Vec::with_capacity(yarn.curves.len());
         self.chunks.clear();
         for curve in &yarn.curves {
             let first = points.len() + 1;
             let roll = lay_out(curve, curves.len() as u32, &mut points);
             if points.len() > first {
-                self.chunks.extend(chunks(&points[first..points.len() - 1], first, curve.radius));
+                self.chunks.extend(chunks(&points[first..points.len() - 2], first, curve.radius));
             }
             curves.push(Curve { color: curve.color, radius: curve.radius, roll, padding: [0.0; 3] });
         }
@@ -73,7 +77,9 @@ impl YarnMesh {
         );
         self.radius = yarn.curves.iter().map(|curve| curve.radius).fold(0.0, f32::max);
         let limits = gpu.device.limits();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        // The numbers of vertices must fit, too: five million control points.
+        let numbered = (i32::MAX as u32 / SPAN_VERTICES) as u64 * size_of::<ControlPoint>() as u64;
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(numbered);
         let written = self
             .points
             .write(gpu, bytemuck::cast_slice(&points), limit)
@@ -120,6 +126,7 @@ fn chunks(points: &[ControlPoint], first: usize, radius: f32) -> impl Iterator<I
 /// The pipelines that draw it, and the triangles of all levels.
 #[derive(Debug)]
 pub(crate) struct YarnPipelines {
+    frayed: wgpu::RenderPipeline,
     tube: wgpu::RenderPipeline,
     ribbon: wgpu::RenderPipeline,
     shadow: wgpu::RenderPipeline,
@@ -155,6 +162,12 @@ impl YarnPipelines {
             depth: Some(Greater),
             samples,
         };
+        let frayed = Pipeline {
+            label: "frayed yarn tubes",
+            fragment: Some("frayed_fragment"),
+            vertices: None,
+            ..tube
+        };
         let ribbon = Pipeline {
             label: "yarn ribbons",
             vertex: "ribbon_vertex",
@@ -174,22 +187,23 @@ impl YarnPipelines {
             vertices: None,
             ..ribbon
         };
-        let (tube, ribbon, shadow) = (tube.build(device), ribbon.build(device), shadow.build(device));
+        let [frayed, tube, ribbon, shadow] =
+            [frayed, tube, ribbon, shadow].map(|pipeline| pipeline.build(device));
 
         let mut indices = Vec::new();
         let mut starts = vec![0];
         for level in Level::all() {
-            indices.extend(level.triangles());
+            indices.extend((0..RUN).flat_map(|span| level.triangles(span)));
             starts.push(indices.len() as u32);
         }
         let triangles = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("yarn triangles"),
-            size: (indices.len() * size_of::<u16>()) as u64,
+            size: (indices.len() * size_of::<u32>()) as u64,
             usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(&indices));
-        Self { tube, ribbon, shadow, layout, triangles, starts }
+        Self { frayed, tube, ribbon, shadow, layout, triangles, starts }
     }
 
     /// Draws what is in the picture; `scale` as in [`batches`].
@@ -201,10 +215,11 @@ impl YarnPipelines {
         scale: impl Fn(Vec3, f32) -> Option<f32>,
     ) {
         let batches = batches(&mesh.chunks, scale);
-        let ribbons = batches.partition_point(|batch| batch.level.is_ribbon());
-        let (ribbons, tubes) = batches.split_at(ribbons);
-        // Tubes are nearer than ribbons and hide some of them.
-        self.draw_batches(gpu, pass, &self.tube, mesh, tubes);
+        let (ribbons, tubes) = batches.split_at(batches.partition_point(|batch| batch.level.is_ribbon()));
+        let (plain, frayed) = tubes.split_at(tubes.partition_point(|batch| !batch.level.is_frayed()));
+        // The widest yarn is nearest and hides some of the rest.
+        self.draw_batches(gpu, pass, &self.frayed, mesh, frayed);
+        self.draw_batches(gpu, pass, &self.tube, mesh, plain);
         self.draw_batches(gpu, pass, &self.ribbon, mesh, ribbons);
     }
 
@@ -238,10 +253,12 @@ impl YarnPipelines {
         let buffers = [points, curves].map(wgpu::Buffer::as_entire_binding);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &bind_group(&gpu.device, &self.layout, buffers.to_vec()), &[]);
-        pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint16);
+        pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for batch in batches {
             let level = batch.level.index();
-            pass.draw_indexed(self.starts[level]..self.starts[level + 1], 0, batch.first..batch.end);
+            let (start, end) = (self.starts[level], self.starts[level + 1]);
+            let count = (end - start) / RUN * (batch.end - batch.first);
+            pass.draw_indexed(start..start + count, (batch.first * SPAN_VERTICES) as i32, 0..1);
         }
     }
 }

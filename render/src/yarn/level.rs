@@ -18,10 +18,16 @@ use glam::Vec3;
 pub(crate) const SAMPLES: u32 = 16;
 /// Sides of a tube in the finest level.
 pub(crate) const SIDES: u32 = 24;
+/// Vertices of the finest grid of a span; its last ring is the first of the next span.
+pub(crate) const SPAN_VERTICES: u32 = SAMPLES * (SIDES + 1);
+/// Spans that one draw call can take.
+pub(crate) const RUN: u32 = 128;
 /// Sides of the tubes, finest last; each divides [`SIDES`]. The first stands for a ribbon.
 const TUBES: [u32; 5] = [1, 6, 8, 12, SIDES];
+/// From this of the tubes on, the yarn is wide enough to fray.
+const FRAYED: usize = 3;
 /// A tube of so many sides is used up to this radius [px], where the flat sides show by half a pixel or so.
-const TUBE_RADII: [f32; 4] = [4.0, 6.0, 12.0, 28.0];
+const TUBE_RADII: [f32; 4] = [5.0, 7.0, 13.0, 28.0];
 /// How far drawn yarn may lie beside the spline [px]: 0.5 is seen at the outline, 0.2 only costs time.
 const ERROR: f32 = 0.35;
 
@@ -62,10 +68,16 @@ impl Level {
         self.tube == 0
     }
 
-    /// Triangles of one span; a vertex is its step times ([`SIDES`] + 1) plus its side, in steps of the finest level.
-    pub fn triangles(self) -> Vec<u16> {
+    /// Whether single fibres show at the outline.
+    pub fn is_frayed(self) -> bool {
+        self.tube >= FRAYED
+    }
+
+    /// Triangles of a span, as numbers of vertices: step times ([`SIDES`] + 1) plus side, in steps of the finest level,
+    /// plus [`SPAN_VERTICES`] for each span before.
+    pub fn triangles(self, span: u32) -> Vec<u32> {
         let (step, side) = (SAMPLES >> self.samples, SIDES / TUBES[self.tube]);
-        let at = |i: u32, j: u32| (i * (SIDES + 1) + j) as u16;
+        let at = |i: u32, j: u32| span * SPAN_VERTICES + i * (SIDES + 1) + j;
         let mut out = Vec::new();
         for i in (0..SAMPLES).step_by(step as usize) {
             for j in (0..SIDES).step_by(side as usize) {
@@ -80,7 +92,7 @@ impl Level {
 /// A run of spans of one curve, culled and drawn together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chunk {
-    /// Index of the first span's second control point in the buffer, which is its instance.
+    /// The first span: the index of its start in the buffer of control points.
     pub first: u32,
     /// Number of spans.
     pub spans: u32,
@@ -93,7 +105,7 @@ pub(crate) struct Chunk {
     pub span: f32,
 }
 
-/// Instances to draw at one level.
+/// Spans to draw at one level, at most [`RUN`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Batch {
     pub level: Level,
@@ -110,7 +122,9 @@ pub(crate) fn batches(chunks: &[Chunk], scale: impl Fn(Vec3, f32) -> Option<f32>
         let level = Level::of(chunk.radius * pixels, chunk.span * pixels);
         let end = chunk.first + chunk.spans;
         match out.last_mut() {
-            Some(last) if last.level == level && last.end == chunk.first => last.end = end,
+            Some(last) if last.level == level && last.end == chunk.first && end - last.first <= RUN => {
+                last.end = end
+            }
             _ => out.push(Batch { level, first: chunk.first, end }),
         }
     }
@@ -131,7 +145,7 @@ mod tests {
     fn yarn_gets_finer_as_it_comes_nearer() {
         let counts: Vec<_> = (0..12)
             .map(|i| 0.3 * f32::powi(2.0, i))
-            .map(|radius| Level::of(radius, 2.0 * radius).triangles().len() / 3)
+            .map(|radius| Level::of(radius, 2.0 * radius).triangles(0).len() / 3)
             .collect();
         assert!(counts.is_sorted() && counts[0] == 2 && counts[8] >= 24, "{counts:?}");
     }
@@ -139,10 +153,12 @@ mod tests {
     #[test]
     fn triangles_of_a_tube_close_around_it() {
         for level in Level::all() {
-            let triangles = level.triangles();
+            let triangles = level.triangles(0);
             assert_eq!(triangles.len() as u32, (1 << level.samples) * TUBES[level.tube] * 6);
             // Every edge across or along appears in two triangles, but for the rings at the ends and the seam.
-            assert!(triangles.contains(&0) && triangles.contains(&((SAMPLES * (SIDES + 1) + SIDES) as u16)));
+            assert!(triangles.contains(&0) && triangles.contains(&(SPAN_VERTICES + SIDES)));
+            let next = level.triangles(1);
+            assert!(next.iter().zip(&triangles).all(|(b, a)| b - a == SPAN_VERTICES), "spans share a ring");
         }
     }
 

@@ -46,8 +46,8 @@ fn tangent([p0, p1, p2]: [Vec3; 3]) -> Vec3 {
     derivative.normalize_or_zero()
 }
 
-/// Appends the points of a curve, with one more before its start and one or two after its end, so that every span finds
-/// its four. Returns the roll a span [rad].
+/// Appends the points of a curve, with one more before its start and two after its end (three if it is closed: its first
+/// point again), so that every span, and the end of the last, finds its four. Returns the roll a span [rad].
 pub(crate) fn lay_out(curve: &YarnCurve, index: u32, out: &mut Vec<ControlPoint>) -> f32 {
     let spans = curve.span_count();
     if spans == 0 || curve.points.len() < 2 {
@@ -77,7 +77,8 @@ pub(crate) fn lay_out(curve: &YarnCurve, index: u32, out: &mut Vec<ControlPoint>
         let end = if !curve.closed && (i == 0 || i == spans) { END } else { 0 };
         out.push(ControlPoint { position: at(i), arc, normal, curve: index | end });
     }
-    out.push(ControlPoint { position: after, arc, normal: Vec3::ZERO, curve: index });
+    let beyond = ControlPoint { position: after, arc, normal: Vec3::ZERO, curve: index };
+    out.extend([beyond; 2]);
     if curve.closed { close(&mut out[first + 1..=first + 1 + spans], start_direction) } else { 0.0 }
 }
 
@@ -114,12 +115,12 @@ mod tests {
         YarnCurve { points, closed, radius: 1e-3, color: [1.0; 3] }
     }
 
-    /// A closed curve that leaves its plane, so that its frame comes back turned.
-    fn tennis_ball(n: usize) -> Vec<Vec3> {
+    /// A closed curve that writhes, so that its frame comes back turned.
+    fn trefoil(n: usize) -> Vec<Vec3> {
         let point = |i: usize| {
             let t = TAU * i as f32 / n as f32;
-            Vec3::new(t.cos() + 0.3 * (3.0 * t).cos(), t.sin() - 0.3 * (3.0 * t).sin(), 0.8 * (2.0 * t).sin())
-                * 0.01
+            let around = 2.0 + (3.0 * t).cos();
+            Vec3::new(around * (2.0 * t).cos(), around * (2.0 * t).sin(), (3.0 * t).sin()) * 0.01
         };
         (0..n).map(point).collect()
     }
@@ -132,7 +133,7 @@ mod tests {
 
     #[test]
     fn normals_are_orthonormal_and_turn_slowly() {
-        for (points, closed) in [(helix(200), false), (tennis_ball(60), true)] {
+        for (points, closed) in [(helix(200), false), (trefoil(60), true)] {
             let mut out = Vec::new();
             lay_out(&curve(points, closed), 0, &mut out);
             for w in out.windows(3) {
@@ -150,7 +151,7 @@ mod tests {
     #[test]
     fn a_closed_curve_ends_as_it_begins() {
         let mut out = Vec::new();
-        let roll = lay_out(&curve(tennis_ball(60), true), 3, &mut out);
+        let roll = lay_out(&curve(trefoil(60), true), 3, &mut out);
         let (first, last) = (out[1], out[61]);
         assert_eq!(first.position, last.position);
         assert!(first.normal.distance(last.normal) < 1e-4, "{} {}", first.normal, last.normal);

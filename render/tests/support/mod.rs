@@ -30,7 +30,7 @@ pub fn stockinette(wales: usize, courses: usize) -> YarnCurves {
         YarnCurve {
             points: (0..=wales * PER_LOOP).map(point).collect(),
             closed: false,
-            radius: 0.62e-3,
+            radius: 0.66e-3,
             color,
         }
     };
