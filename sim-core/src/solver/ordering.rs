@@ -16,7 +16,7 @@ use glam::DVec3;
 const LEAF: usize = 12;
 
 /// Places of the planes that are tried, as parts of the nodes on one side.
-const CUTS: [f64; 5] = [0.42, 0.46, 0.5, 0.54, 0.58];
+const CUTS: [f64; 9] = [0.42, 0.44, 0.46, 0.48, 0.5, 0.52, 0.54, 0.56, 0.58];
 
 /// The unknowns of `model` in the order of their elimination.
 pub(crate) fn elimination_order(model: &Model) -> Vec<u32> {
