@@ -210,15 +210,18 @@ fn check_face(face: u32, count: usize) -> Result<()> {
     Ok(())
 }
 
-/// Reads a script: one command a line, as JSON; empty lines and lines that begin with `#` are passed over.
+/// Reads a script: one command a line, as JSON; empty lines and lines that begin with `#` are passed over. Each command comes
+/// with the number of its line, from 1.
 ///
 /// # Errors
 /// The line that is not a command.
-pub fn read_script(text: &str) -> Result<Vec<Command>> {
+pub fn read_script(text: &str) -> Result<Vec<(usize, Command)>> {
     let lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.trim().starts_with('#'));
     lines
         .map(|(number, line)| {
-            serde_json::from_str(line).with_context(|| format!("line {}: not a command", number + 1))
+            let command =
+                serde_json::from_str(line).with_context(|| format!("line {}: not a command", number + 1))?;
+            Ok((number + 1, command))
         })
         .collect()
 }

@@ -105,7 +105,9 @@ fn swap(from: &mut Vec<Step>, to: &mut Vec<Step>, project: &mut Project) -> bool
 /// One command that does what two of the same brush did.
 fn merge(first: &Command, second: Command) -> Command {
     match (first, second) {
-        (Command::SetStitch { faces, stitch: a }, Command::SetStitch { faces: more, stitch }) if *a == stitch => {
+        (Command::SetStitch { faces, stitch: a }, Command::SetStitch { faces: more, stitch })
+            if *a == stitch =>
+        {
             let mut faces = faces.clone();
             faces.extend(more.iter().filter(|f| !faces.contains(f)).copied().collect::<Vec<_>>());
             Command::SetStitch { faces, stitch }
@@ -158,7 +160,10 @@ mod tests {
         document.apply(purl(3)).unwrap();
         document.amend(purl(4)).unwrap();
         document.amend(purl(4)).unwrap();
-        assert_eq!(document.done().collect::<Vec<_>>(), [&Command::SetStitch { faces: vec![3, 4], stitch: Stitch::purl() }]);
+        assert_eq!(
+            document.done().collect::<Vec<_>>(),
+            [&Command::SetStitch { faces: vec![3, 4], stitch: Stitch::purl() }]
+        );
         assert!(document.undo());
         assert_eq!(purls(&document), 0);
     }
@@ -166,12 +171,13 @@ mod tests {
     #[test]
     fn a_failed_command_changes_nothing() {
         let mut document = document();
-        let error = document
-            .apply(Command::SetStitch { faces: vec![0, 99], stitch: Stitch::purl() })
-            .unwrap_err();
+        let error =
+            document.apply(Command::SetStitch { faces: vec![0, 99], stitch: Stitch::purl() }).unwrap_err();
         assert_eq!(error.to_string(), "there is no face 99: the faces are 0–23");
         assert_eq!((purls(&document), document.done().len()), (0, 0));
-        assert!(document.apply(Command::SetStitch { faces: vec![0], stitch: "kp".parse().unwrap() }).is_err());
+        assert!(
+            document.apply(Command::SetStitch { faces: vec![0], stitch: "kp".parse().unwrap() }).is_err()
+        );
     }
 
     #[test]
@@ -182,12 +188,17 @@ mod tests {
         document.apply(Command::SetChart { chart: vec!["k p".into()], rows: Some([1, 2]) }).unwrap();
         let script = write_script(document.done()).unwrap();
         let mut again = Document::new(self::document().project().clone());
-        for command in read_script(&script).unwrap() {
+        for (_, command) in read_script(&script).unwrap() {
             again.apply(command).unwrap();
         }
         let stitches = |d: &Document| d.project().fabric().unwrap().stitches.clone();
         assert_eq!(stitches(&again), stitches(&document));
         assert!(purls(&again) > 0);
-        assert!(read_script("{\"do\":\"autolabel\"}\n{\"do\":\"dance\"}").unwrap_err().to_string().contains("line 2"));
+        assert!(
+            read_script("{\"do\":\"autolabel\"}\n{\"do\":\"dance\"}")
+                .unwrap_err()
+                .to_string()
+                .contains("line 2")
+        );
     }
 }

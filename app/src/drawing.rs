@@ -51,10 +51,7 @@ pub fn faces(mesh: &PolygonMesh, color: impl Fn(usize) -> [f32; 3]) -> Faces {
     let vertices = |f| mesh.face_vertices(f).map(|v| v.0).collect();
     Faces {
         positions: mesh.positions().iter().map(|p| p.as_vec3()).collect(),
-        polygons: mesh
-            .faces()
-            .map(|f| Polygon { vertices: vertices(f), color: color(f.index()) })
-            .collect(),
+        polygons: mesh.faces().map(|f| Polygon { vertices: vertices(f), color: color(f.index()) }).collect(),
     }
 }
 
@@ -94,8 +91,14 @@ fn label_drawing(labelled: &LabelledMesh) -> Drawing {
             0 => or,
             n => points.iter().sum::<DVec3>() / n as f64,
         };
-        let bottom = mean(labelled.bottoms(wales).into_iter().map(middle).collect(), mesh.position(mesh.origin(wales.right)));
-        let top = mean(labelled.tops(wales).into_iter().map(middle).collect(), mesh.position(mesh.tip(wales.right)));
+        let bottom = mean(
+            labelled.bottoms(wales).into_iter().map(middle).collect(),
+            mesh.position(mesh.origin(wales.right)),
+        );
+        let top = mean(
+            labelled.tops(wales).into_iter().map(middle).collect(),
+            mesh.position(mesh.tip(wales.right)),
+        );
         let side = (middle(wales.right) - middle(wales.left)) * 0.12;
         let (from, to) = (bottom.lerp(top, 0.3), bottom.lerp(top, 0.7));
         let barb = bottom.lerp(top, 0.5);

@@ -27,3 +27,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     };
     write().with_context(|| format!("cannot write {}", path.display()))
 }
+
+/// Writes a picture as PNG, whole or not at all.
+pub fn write_png(path: &Path, image: &image::RgbaImage) -> Result<()> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png)?;
+    write(path, bytes.get_ref())
+}

@@ -64,10 +64,10 @@ pub struct Inspection {
 /// Measures a project.
 pub fn inspect(project: &Project) -> Inspection {
     let labelled = &project.labelled;
-    let problems = labelled.problems().into_iter().map(|p| Problem {
-        r#where: format!("face {}", p.face()),
-        what: p.to_string(),
-    });
+    let problems = labelled
+        .problems()
+        .into_iter()
+        .map(|p| Problem { r#where: format!("face {}", p.face()), what: p.to_string() });
     let mesh = project.fabric.as_ref().map_or(labelled.mesh(), |f| f.stitches.mesh());
     let [low, high] = mesh.bounds();
     let facts = Inspection {
@@ -97,7 +97,8 @@ fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
     for stitch in stitches.stitches() {
         *facts.stitches.entry(stitch.to_string()).or_default() += 1;
     }
-    facts.yarn_length_m = net.yarns.iter().map(|y| y.period.unwrap_or(net.visits[y.visits.end as usize - 1].u)).sum();
+    facts.yarn_length_m =
+        net.yarns.iter().map(|y| y.period.unwrap_or(net.visits[y.visits.end as usize - 1].u)).sum();
 
     let mut centers = vec![(DVec3::ZERO, 0.0); stitches.mesh().face_count()];
     for (node, position) in net.nodes.iter().zip(&state.position) {
@@ -112,7 +113,8 @@ fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
         1e3 * total / pairs.len().max(1) as f64
     };
     let faces = || stitches.mesh().faces();
-    facts.mean_course_spacing_mm = mean(faces().flat_map(|f| stitches.above(f).map(move |a| (f, a))).collect());
+    facts.mean_course_spacing_mm =
+        mean(faces().flat_map(|f| stitches.above(f).map(move |a| (f, a))).collect());
     let beside = |f: FaceId| Some((f, stitches.mesh().face_across(stitches.right(f))?));
     facts.mean_wale_spacing_mm = mean(faces().filter_map(beside).collect());
     let (low, high) = state

@@ -17,3 +17,4 @@ pub mod files;
 pub mod inspect;
 pub mod project;
 pub mod scenes;
+pub mod window;

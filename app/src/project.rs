@@ -259,7 +259,9 @@ mod tests {
         assert!(error("").contains("not a Purlwise project"));
         assert!(error(&json[..json.len() / 2]).contains("line 1 column"));
         assert!(error(&json.replace("\"purlwise\":1", "\"purlwise\":2")).contains("newer Purlwise"));
-        assert!(error(&json.replacen("\"labels\":[", "\"labels\":[null,", 1)).contains("labels do not belong"));
+        assert!(
+            error(&json.replacen("\"labels\":[", "\"labels\":[null,", 1)).contains("labels do not belong")
+        );
         assert!(error(&json.replacen("\"k\"", "\"kp\"", 1)).contains("face 0"));
         assert!(error(&json.replacen("\"faces\":[[0", "\"faces\":[[99", 1)).contains("names vertex 99"));
     }

@@ -46,7 +46,11 @@ pub fn scene(name_or_file: &str, state: &YarnState) -> Result<Scene> {
         }
         "form" => Scene {
             // Shoulders, chest and waist of a child's dress form.
-            bodies: vec![capsule(0.115, 0.285, 0.030), capsule(0.075, 0.20, 0.075), capsule(0.070, 0.06, 0.078)],
+            bodies: vec![
+                capsule(0.115, 0.285, 0.030),
+                capsule(0.075, 0.20, 0.075),
+                capsule(0.070, 0.06, 0.078),
+            ],
             ..Scene::default()
         },
         file if Path::new(file).exists() => {

@@ -32,7 +32,9 @@ pub enum ChartError {
         error: StitchError,
     },
     /// A stitch of another shape.
-    #[error("line {line}: '{symbol}' does not join one loop to one, so it cannot be repeated over any fabric")]
+    #[error(
+        "line {line}: '{symbol}' does not join one loop to one, so it cannot be repeated over any fabric"
+    )]
     Shape {
         /// Line, from 1.
         line: usize,
