@@ -1,7 +1,6 @@
 //! Prints what a step of stockinette takes: `cargo run --release -p sim-core --example timing -- 24 56`.
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code, reason = "the tests use all of it")]
 mod common;
 
 use std::time::Instant;

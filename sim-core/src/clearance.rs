@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn a_yarn_is_no_neighbour_of_itself_until_it_comes_back() {
         let straight = YarnCurves { curves: vec![line(-Vec3::X, Vec3::X)] };
-        assert_eq!(least_distance(&straight), f64::INFINITY);
+        assert!(least_distance(&straight) > 0.6);
         let mut back = line(Vec3::ZERO, Vec3::X * 3.0);
         back.points.extend(line(Vec3::new(3.0, 0.2, 0.0), Vec3::new(0.0, 0.2, 0.0)).points);
         assert!((least_distance(&YarnCurves { curves: vec![back] }) - 0.2).abs() < 5e-3);

@@ -15,6 +15,7 @@
 mod assembly;
 mod bend;
 mod body;
+mod carry_over;
 mod clearance;
 mod contact_length;
 mod curves;
@@ -34,9 +35,11 @@ mod simulator;
 mod solver;
 mod step;
 mod stretch;
+mod thread;
 mod wrap;
 
 pub use body::Body;
+pub use carry_over::carry_over;
 pub use clearance::least_distance;
 pub use curves::curves;
 pub use facts::Facts;
@@ -46,6 +49,7 @@ pub use scene::{Pin, Scene, SceneError};
 pub use simulator::{SettleGoal, SettleProgress, Settled, SimError, Simulator, StepReport};
 pub use solver::cholesky::SolveError;
 pub use step::Rejection;
+pub use thread::{SimCommand, SimThread, Snapshot};
 
 #[cfg(test)]
 mod testing;

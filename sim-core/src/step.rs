@@ -16,7 +16,7 @@ use crate::friction::{FrictionSpring, normal_forces};
 use crate::local::Element;
 use crate::material::Material;
 use crate::model::{FROZEN, Model};
-use crate::rigid;
+use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
 use crate::solver::cholesky::{Cholesky, SolveError};
 use glam::DVec3;
@@ -81,13 +81,18 @@ impl Stepper {
         h: f64,
     ) -> Result<Stuck, Rejection> {
         let state = &now.state;
-        let omega = rigid::rotation(state, &self.masses);
-        self.system.assemble(&self.model, Start { material, state, gravity: scene.gravity, omega, step: h });
+        let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
+        let start = Start { material, state, gravity: scene.gravity, omega: rotation.omega, step: h };
+        self.system.assemble(&self.model, start);
         let anchor = self.add_friction(now, material, h);
-        self.add_bodies(state, material, scene, h);
-        self.add_pins(state, scene, h);
+        let touched = self.add_bodies(state, material, scene, h) + self.add_pins(state, scene, h);
         self.cholesky.solve(&self.system.matrix, &mut self.system.rhs)?;
-        let next = self.advanced(state, h);
+        let (mut velocity, rate) = self.solved();
+        if touched == 0 {
+            let kept = Rotation { omega: rotation.omega / (1.0 + h * material.mass_damping), ..rotation };
+            self.keep_rotation(state, &mut velocity, kept);
+        }
+        let next = advanced(state, velocity, rate, h);
         self.judge(state, &next)?;
         Ok(Stuck { state: next, anchor })
     }
@@ -112,7 +117,9 @@ impl Stepper {
         anchor
     }
 
-    fn add_bodies(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) {
+    /// Gives the number of contacts.
+    fn add_bodies(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) -> usize {
+        let mut count = 0;
         for &body in &scene.bodies {
             for node in 0..state.position.len() {
                 let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
@@ -122,18 +129,22 @@ impl Stepper {
                 if gap + h * v.dot(normal).min(0.0) >= 0.0 {
                     continue;
                 }
+                count += 1;
                 self.add_point(node, &contact, x, h);
                 let drag = h * contact.drag(x, v, mass, h);
                 let n = normal.to_array();
                 self.add_block(node, |i, j| drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
             }
         }
+        count
     }
 
-    fn add_pins(&mut self, state: &YarnState, scene: &Scene, h: f64) {
+    /// Gives the number of pins.
+    fn add_pins(&mut self, state: &YarnState, scene: &Scene, h: f64) -> usize {
         for pin in &scene.pins {
             self.add_point(pin.node as usize, pin, state.position[pin.node as usize], h);
         }
+        scene.pins.len()
     }
 
     /// Adds a force on the position of one node.
@@ -154,21 +165,21 @@ impl Stepper {
         }
     }
 
-    /// The state that the solved velocities lead to.
-    fn advanced(&self, state: &YarnState, h: f64) -> YarnState {
+    /// The velocities of nodes and the rates of sliding coordinates that the system was solved for.
+    fn solved(&self) -> (Vec<DVec3>, Vec<f64>) {
         let v = &self.system.rhs;
-        let mut next = state.clone();
-        for (node, &start) in self.model.start[..state.position.len()].iter().enumerate() {
-            let start = start as usize;
-            next.velocity[node] = DVec3::new(v[start], v[start + 1], v[start + 2]);
-            next.position[node] += h * next.velocity[node];
+        let nodes = &self.model.start[..self.model.net.nodes.len()];
+        let velocity = nodes.iter().map(|s| DVec3::from_slice(&v[*s as usize..*s as usize + 3])).collect();
+        let rate = |dof: &u32| if *dof == FROZEN { 0.0 } else { v[*dof as usize] };
+        (velocity, self.model.sliding.iter().map(rate).collect())
+    }
+
+    /// Gives `velocity` the rigid rotation `kept` instead of its own.
+    fn keep_rotation(&self, state: &YarnState, velocity: &mut [DVec3], kept: Rotation) {
+        let solved = rigid::rotation(&state.position, velocity, &self.masses);
+        for (v, x) in velocity.iter_mut().zip(&state.position) {
+            *v += (kept.omega - solved.omega).cross(*x - kept.center);
         }
-        for (visit, &dof) in self.model.sliding.iter().enumerate() {
-            let rate = if dof == FROZEN { 0.0 } else { v[dof as usize] };
-            next.sliding_velocity[visit] = rate;
-            next.sliding[visit] += h * rate;
-        }
-        next
     }
 
     /// Whether `next` may follow `state`.
@@ -190,6 +201,18 @@ impl Stepper {
             }
         }
         Ok(())
+    }
+}
+
+/// `state` moved on for `h` with the given velocities.
+fn advanced(state: &YarnState, velocity: Vec<DVec3>, sliding_velocity: Vec<f64>, h: f64) -> YarnState {
+    let moved = |(x, v): (&DVec3, &DVec3)| *x + h * *v;
+    let slid = |(u, rate): (&f64, &f64)| u + h * rate;
+    YarnState {
+        position: state.position.iter().zip(&velocity).map(moved).collect(),
+        sliding: state.sliding.iter().zip(&sliding_velocity).map(slid).collect(),
+        velocity,
+        sliding_velocity,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Swatches and what to measure on them.
 
+#![allow(dead_code, reason = "each suite uses a part of it")]
+
 use glam::DVec3;
 use sim_core::{Material, Scene, Simulator};
 use std::sync::Arc;
@@ -46,18 +48,21 @@ pub fn size(state: &YarnState) -> DVec3 {
     high - low
 }
 
+/// Mean position of the nodes of the faces that are `chosen` [m].
+pub fn mean_position(net: &YarnNet, state: &YarnState, chosen: impl Fn(usize) -> bool) -> DVec3 {
+    let all = net.nodes.iter().zip(&state.position);
+    let those = all.filter(|(n, _)| n.face.is_some_and(|f| chosen(f.index())));
+    let (sum, count) = those.fold((DVec3::ZERO, 0.0), |(s, c), (_, x)| (s + *x, c + 1.0));
+    sum / count
+}
+
 /// Mean height over the middle of the fabric's bottom, top, left and right edge, in the frame of the fabric's middle,
 /// positive to the front [m].
 pub fn edge_heights(net: &YarnNet, state: &YarnState, wide: usize, high: usize) -> [f64; 4] {
     let place = |face: usize| ((face % wide) as f64 + 0.5) / wide as f64;
     let row = |face: usize| ((face / wide) as f64 + 0.5) / high as f64;
-    let mean = |chosen: &dyn Fn(f64, f64) -> bool| {
-        let all = net.nodes.iter().zip(&state.position);
-        let those =
-            all.filter_map(|(n, x)| n.face.filter(|f| chosen(place(f.index()), row(f.index()))).map(|_| *x));
-        let (sum, count) = those.fold((DVec3::ZERO, 0.0), |(s, c), x| (s + x, c + 1.0));
-        sum / count
-    };
+    let mean =
+        |chosen: &dyn Fn(f64, f64) -> bool| mean_position(net, state, |face| chosen(place(face), row(face)));
     let inner = |x: f64| (0.35..0.65).contains(&x);
     let middle = mean(&|s, t| inner(s) && inner(t));
     let across = mean(&|s, t| s > 0.6 && s < 0.8 && inner(t)) - mean(&|s, t| s > 0.2 && s < 0.4 && inner(t));
