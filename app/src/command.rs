@@ -9,7 +9,7 @@ use patterns::chart::Chart;
 use serde::{Deserialize, Serialize};
 use sim_core::{Material, Scene};
 use std::sync::Arc;
-use stitch_mesh::autolabel::autolabel;
+use stitch_mesh::autolabel::{autolabel, grow};
 use stitch_mesh::ids::{EdgeId, FaceId, VertexId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
 use stitch_mesh::stitch::Stitch;
@@ -28,6 +28,11 @@ pub enum Command {
     /// Labels the row beyond a course edge.
     FillFromCourse {
         /// The course edge.
+        edge: [u32; 2],
+    },
+    /// Labels the row on a border or beyond a course edge, and all rows that can be reached from there.
+    FillOnwards {
+        /// The edge.
         edge: [u32; 2],
     },
     /// Labels one edge by hand, or takes its label away.
@@ -86,6 +91,7 @@ impl Command {
         match self {
             Self::FillFromBorder { .. } => "Fill row from border".into(),
             Self::FillFromCourse { .. } => "Fill next row".into(),
+            Self::FillOnwards { .. } => "Fill rows onwards".into(),
             Self::LabelEdge { label: Some(EdgeLabel::Course), .. } => "Label edge course".into(),
             Self::LabelEdge { label: Some(EdgeLabel::Wale), .. } => "Label edge wale".into(),
             Self::LabelEdge { label: None, .. } => "Clear edge label".into(),
@@ -115,6 +121,15 @@ impl Command {
             })?,
             Self::FillFromCourse { edge } => relabel(&mut after, |l| {
                 l.fill_from_course(find_edge(l, *edge)?)?;
+                Ok(())
+            })?,
+            Self::FillOnwards { edge } => relabel(&mut after, |l| {
+                let edge = find_edge(l, *edge)?;
+                match l.label(edge) {
+                    Some(EdgeLabel::Course) => l.fill_from_course(edge)?,
+                    _ => l.fill_from_border(edge)?,
+                };
+                grow(l);
                 Ok(())
             })?,
             Self::LabelEdge { edge, label } => relabel(&mut after, |l| {

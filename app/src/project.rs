@@ -101,7 +101,7 @@ impl Project {
         if let (Some(fabric), Some(from)) = (&mut self.fabric, &other.fabric)
             && fabric.stitches.mesh() == from.stitches.mesh()
         {
-            fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net)));
+            fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net, Some)));
             fabric.facts = from.facts.clone().filter(|_| Arc::ptr_eq(&fabric.net, &from.net));
         }
     }

@@ -55,7 +55,7 @@ fn sides(mesh: &PolygonMesh) -> Vec<EdgeId> {
 }
 
 /// Fills outwards from every labelled row until nothing more can be reached.
-fn grow(labelled: &mut LabelledMesh) {
+pub fn grow(labelled: &mut LabelledMesh) {
     let mut open: VecDeque<EdgeId> = labelled.mesh().edges().collect();
     while let Some(edge) = open.pop_front() {
         if let Ok(row) = labelled.fill_from_course(edge) {

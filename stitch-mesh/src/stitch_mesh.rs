@@ -205,7 +205,7 @@ impl StitchMesh {
         let mut rows = Vec::new();
         for face in self.mesh.faces() {
             if row_of[face.index()] == usize::MAX {
-                let row = self.row_from(face);
+                let row = self.row_of(face);
                 row.faces.iter().for_each(|f| row_of[f.index()] = rows.len());
                 rows.push(row);
             }
@@ -247,7 +247,8 @@ impl StitchMesh {
         sorted
     }
 
-    fn row_from(&self, face: FaceId) -> Row {
+    /// The row through a face, left to right.
+    pub fn row_of(&self, face: FaceId) -> Row {
         let right = |f: FaceId| self.mesh.face_across(self.right(f));
         let left = |f: FaceId| self.mesh.face_across(self.left(f));
         let mut first = face;

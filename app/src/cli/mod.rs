@@ -4,6 +4,8 @@ mod demo;
 mod interrupt;
 mod simulate;
 
+pub use demo::project as demo_project;
+
 use crate::command::{Command, read_script};
 use crate::document::Document;
 use crate::drawing::{Stage, drawing};

@@ -1,0 +1,88 @@
+//! The picture in the middle of the window: drawn by the renderer on egui's own device, shown by egui as a texture.
+
+use anyhow::Result;
+use egui_wgpu::Renderer as Painter;
+use egui_wgpu::wgpu::FilterMode;
+use render::{Camera, Drawing, Gpu, Lines, Quality, Renderer, Scene, Solids, Viewport};
+use std::sync::Arc;
+use stitch_mesh::yarn_curves::YarnCurves;
+
+/// egui's painter, which holds the textures that egui can show.
+pub type SharedPainter = Arc<egui::mutex::RwLock<Painter>>;
+
+/// Renderer, viewport and what is in it.
+pub struct Screen {
+    gpu: Gpu,
+    painter: SharedPainter,
+    renderer: Renderer,
+    viewport: Viewport,
+    scene: Scene,
+    texture: egui::TextureId,
+}
+
+impl Screen {
+    /// A screen on the device that egui paints with.
+    ///
+    /// # Errors
+    /// The device cannot hold a viewport.
+    pub fn new(gpu: Gpu, painter: SharedPainter) -> Result<Self> {
+        let renderer = Renderer::new(&gpu, Quality::Interactive);
+        let viewport = Viewport::new(&gpu, &renderer, [64, 64])?;
+        let texture =
+            painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
+        Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture })
+    }
+
+    /// Replaces all that is shown.
+    ///
+    /// # Errors
+    /// It is more than the device holds.
+    pub fn set(&mut self, drawing: &Drawing) -> Result<()> {
+        Ok(self.scene.set(&self.gpu, drawing)?)
+    }
+
+    /// Replaces lines only: the overlay under the pointer.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_lines(&mut self, lines: &Lines) -> Result<()> {
+        Ok(self.scene.set_lines(&self.gpu, lines)?)
+    }
+
+    /// Replaces the yarn only.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_yarn(&mut self, yarn: &YarnCurves) -> Result<()> {
+        Ok(self.scene.set_yarn(&self.gpu, yarn)?)
+    }
+
+    /// Replaces the bodies only.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_solids(&mut self, solids: &Solids) -> Result<()> {
+        Ok(self.scene.set_solids(&self.gpu, solids)?)
+    }
+
+    /// Draws a picture of `size` pixels; of half that where the processor itself draws and something is `moving`.
+    ///
+    /// # Errors
+    /// No such size.
+    pub fn draw(&mut self, size: [u32; 2], camera: &Camera, moving: bool) -> Result<egui::TextureId> {
+        let shrink = if moving && self.gpu.is_software() { 2 } else { 1 };
+        let size = size.map(|pixels| (pixels / shrink).max(1));
+        if self.viewport.resize(&self.gpu, &self.renderer, size)? {
+            self.painter.write().update_egui_texture_from_wgpu_texture(
+                &self.gpu.device,
+                self.viewport.view(),
+                FilterMode::Linear,
+                self.texture,
+            );
+        }
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.renderer.draw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(self.texture)
+    }
+}
