@@ -1,1 +1,20 @@
-//! Placeholder while the crate is being written.
+//! The editor model, the window and the command line.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `project` | what a project is, and its file |
+//! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
+//! | `inspect`, `scenes`, `drawing`, `export` | facts, named scenes, pictures and curves of a project |
+//! | `cli` | the command line |
+//! | `window` | the same document with a mouse |
+
+pub mod cli;
+pub mod command;
+pub mod document;
+pub mod drawing;
+pub mod export;
+pub mod files;
+pub mod inspect;
+pub mod project;
+pub mod scenes;
+pub mod window;

@@ -1,2 +1,7 @@
 //! The `purlwise` program.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    app::cli::main()
+}

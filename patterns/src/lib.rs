@@ -1,1 +1,3 @@
-//! Placeholder while the crate is being written.
+//! Stitch patterns: charts of stitches, and laying them over a stitch mesh.
+
+pub mod chart;

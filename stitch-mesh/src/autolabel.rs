@@ -17,12 +17,12 @@ pub fn autolabel(labelled: &LabelledMesh) -> LabelledMesh {
     let count = component.iter().max().map_or(0, |m| m + 1);
     for c in 0..count {
         let faces: Vec<FaceId> = labelled.mesh().faces().filter(|f| component[f.index()] == c).collect();
-        if faces.iter().all(|f| best.wales(*f).is_some()) {
+        if !faces.iter().any(|f| best.is_open(*f)) {
             continue;
         }
         let candidates = sides(labelled.mesh()).into_iter().filter(|e| {
             let face = labelled.mesh().face(labelled.mesh().edge_sides(*e).0);
-            component[face.index()] == c && best.wales(face).is_none()
+            component[face.index()] == c && best.is_open(face)
         });
         let tried = candidates.map(|edge| {
             let mut attempt = best.clone();

@@ -1,12 +1,8 @@
-//! Labelling: every edge of the input mesh becomes course or wale, and so the faces become rows (stage 1 of the flow).
+//! The labelled mesh: every edge of the input is course or wale, and so the faces are rows (stage 1 of the flow).
 //!
-//! Yuksel et al. §5.1: every face has exactly two wale edges; faces joined by wale edges are a row. Filling from a border
-//! labels that border as course, the faces on it as a row, edges of the row with a vertex on the border as wale and the
-//! rest as course; filling from a course edge does the same for the row beyond it. The order of filling gives the wale
-//! direction, which can be flipped row by row.
-//!
-//! The paper's inputs are tubes. Here a border ends where it turns a corner (a vertex with one face, or with three or more
-//! faces at an inner corner such as that of an armhole), so that flat pieces and garments with openings are filled alike.
+//! Yuksel et al. §5.1: every face has exactly two wale edges; faces joined by wale edges are a row. The wale direction of a
+//! row says which of its sides was knitted first. [`crate::fill`] labels row after row, [`crate::autolabel`] all of them; here
+//! is what labels are, the hand tools, and what can be wrong with them.
 
 use crate::ids::{EdgeId, FaceId, HalfEdgeId};
 use crate::mesh::PolygonMesh;
@@ -100,11 +96,11 @@ pub enum LabelError {
 /// A polygon mesh with the labels given so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LabelledMesh {
-    mesh: PolygonMesh,
+    pub(crate) mesh: PolygonMesh,
     /// [edge_count]
-    labels: Vec<Option<EdgeLabel>>,
+    pub(crate) labels: Vec<Option<EdgeLabel>>,
     /// [face_count]; of faces with exactly two wale edges and all edges labelled.
-    wales: Vec<Option<Wales>>,
+    pub(crate) wales: Vec<Option<Wales>>,
 }
 
 impl LabelledMesh {
@@ -166,18 +162,18 @@ impl LabelledMesh {
         self.between(wales.right, wales.left)
     }
 
-    fn between(&self, from: HalfEdgeId, to: HalfEdgeId) -> Vec<HalfEdgeId> {
+    pub(crate) fn between(&self, from: HalfEdgeId, to: HalfEdgeId) -> Vec<HalfEdgeId> {
         std::iter::successors(Some(self.mesh.next(from)), |h| Some(self.mesh.next(*h)))
             .take_while(|h| *h != to)
             .collect()
     }
 
-    fn label_of(&self, h: HalfEdgeId) -> Option<EdgeLabel> {
+    pub(crate) fn label_of(&self, h: HalfEdgeId) -> Option<EdgeLabel> {
         self.label(self.mesh.edge(h))
     }
 
     /// The wale half-edges of a face when it is fully labelled and has just two.
-    fn wale_half_edges(&self, face: FaceId) -> Option<[HalfEdgeId; 2]> {
+    pub(crate) fn wale_half_edges(&self, face: FaceId) -> Option<[HalfEdgeId; 2]> {
         let half_edges: Vec<HalfEdgeId> = self.mesh.face_half_edges(face).collect();
         if half_edges.iter().any(|h| self.label_of(*h).is_none()) {
             return None;
@@ -185,150 +181,6 @@ impl LabelledMesh {
         let wales: Vec<HalfEdgeId> =
             half_edges.into_iter().filter(|h| self.label_of(*h) == Some(EdgeLabel::Wale)).collect();
         wales.try_into().ok()
-    }
-
-    /// Fills the first row from a border edge: its border, up to the next corners, becomes course. Returns the faces of the row.
-    ///
-    /// # Errors
-    /// [`LabelError::NotBorder`], or [`LabelError::NothingToFill`] where the row is there already.
-    pub fn fill_from_border(&mut self, edge: EdgeId) -> Result<Vec<FaceId>, LabelError> {
-        let (start, twin) = self.mesh.edge_sides(edge);
-        if twin.is_some() {
-            return Err(LabelError::NotBorder(edge));
-        }
-        let base = self.run(
-            start,
-            |h| self.mesh.next_on_border(h).filter(|_| self.mesh.valence(self.mesh.tip(h)) == 2),
-            |h| self.border_before(h).filter(|_| self.mesh.valence(self.mesh.origin(h)) == 2),
-        );
-        self.fill(edge, base)
-    }
-
-    /// Fills the row beyond a course edge: the run of course edges along the labelled row, as far as there are unlabelled
-    /// faces beyond. Returns the faces of the new row.
-    ///
-    /// # Errors
-    /// [`LabelError::NotCourse`], or [`LabelError::NothingToFill`] where no face beyond is unlabelled.
-    pub fn fill_from_course(&mut self, edge: EdgeId) -> Result<Vec<FaceId>, LabelError> {
-        if self.label(edge) != Some(EdgeLabel::Course) {
-            return Err(LabelError::NotCourse(edge));
-        }
-        let (first, twin) = self.mesh.edge_sides(edge);
-        let start = [Some(first), twin]
-            .into_iter()
-            .flatten()
-            .find(|h| self.wales(self.mesh.face(*h)).is_none())
-            .ok_or(LabelError::NothingToFill(edge))?;
-        let open = |h: &HalfEdgeId| {
-            self.wales(self.mesh.face(*h)).is_none() && self.label_of(*h) == Some(EdgeLabel::Course)
-        };
-        // On the far side the course runs the other way.
-        let base = self.run(
-            start,
-            |h| {
-                let far = self.mesh.twin(h)?;
-                self.mesh.twin(self.course_before(far)?).filter(open)
-            },
-            |h| {
-                let far = self.mesh.twin(h)?;
-                self.mesh.twin(self.course_after(far)?).filter(open)
-            },
-        );
-        self.fill(edge, base)
-    }
-
-    /// The longest run through `start` that `next` and `before` allow, in order; once round when it is a ring.
-    fn run(
-        &self,
-        start: HalfEdgeId,
-        next: impl Fn(HalfEdgeId) -> Option<HalfEdgeId>,
-        before: impl Fn(HalfEdgeId) -> Option<HalfEdgeId>,
-    ) -> Vec<HalfEdgeId> {
-        let mut run = vec![start];
-        let mut at = start;
-        while let Some(h) = next(at) {
-            if h == start || run.len() > self.mesh.half_edge_count() {
-                return run;
-            }
-            run.push(h);
-            at = h;
-        }
-        let mut front = Vec::new();
-        at = start;
-        while let Some(h) = before(at).filter(|_| front.len() <= self.mesh.half_edge_count()) {
-            front.push(h);
-            at = h;
-        }
-        front.reverse();
-        front.extend(run);
-        front
-    }
-
-    fn border_before(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
-        // Turn about the origin until the border on the other side of the fan.
-        let mut at = self.mesh.prev(h);
-        while let Some(twin) = self.mesh.twin(at) {
-            at = self.mesh.prev(twin);
-            if at == h {
-                return None;
-            }
-        }
-        Some(at)
-    }
-
-    /// The next course half-edge of the same row and the same side, seen from the labelled face of `h`.
-    fn course_after(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
-        let after = self.mesh.next(h);
-        match self.label_of(after)? {
-            EdgeLabel::Course => Some(after),
-            EdgeLabel::Wale => self.mesh.twin(after).map(|t| self.mesh.next(t)),
-        }
-        .filter(|n| self.label_of(*n) == Some(EdgeLabel::Course))
-    }
-
-    fn course_before(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
-        let before = self.mesh.prev(h);
-        match self.label_of(before)? {
-            EdgeLabel::Course => Some(before),
-            EdgeLabel::Wale => self.mesh.twin(before).map(|t| self.mesh.prev(t)),
-        }
-        .filter(|n| self.label_of(*n) == Some(EdgeLabel::Course))
-    }
-
-    /// Labels the row of faces that stand on `base`.
-    fn fill(&mut self, edge: EdgeId, base: Vec<HalfEdgeId>) -> Result<Vec<FaceId>, LabelError> {
-        let faces: Vec<FaceId> =
-            base.iter().map(|h| self.mesh.face(*h)).filter(|f| self.wales(*f).is_none()).collect();
-        if faces.is_empty() {
-            return Err(LabelError::NothingToFill(edge));
-        }
-        let mut on_base = vec![false; self.mesh.vertex_count()];
-        for h in &base {
-            self.labels[self.mesh.edge(*h).index()] = Some(EdgeLabel::Course);
-            on_base[self.mesh.origin(*h).index()] = true;
-            on_base[self.mesh.tip(*h).index()] = true;
-        }
-        for face in &faces {
-            for h in self.mesh.face_half_edges(*face) {
-                let touches = on_base[self.mesh.origin(h).index()] || on_base[self.mesh.tip(h).index()];
-                let label = if touches { EdgeLabel::Wale } else { EdgeLabel::Course };
-                self.labels[self.mesh.edge(h).index()].get_or_insert(label);
-            }
-        }
-        // The base is the bottom: going round the face, the wale edge after it rises.
-        for h in base {
-            let face = self.mesh.face(h);
-            if self.wales(face).is_none()
-                && let Some([a, b]) = self.wale_half_edges(face)
-            {
-                let base_before_b = self.between(a, b).contains(&h);
-                self.wales[face.index()] = Some(match base_before_b {
-                    true => Wales { left: a, right: b },
-                    false => Wales { left: b, right: a },
-                });
-            }
-        }
-        Ok(faces)
     }
 
     /// Labels a single edge by hand, or takes its label away. Faces at it get a wale direction when that completes them:

@@ -1,0 +1,325 @@
+//! The command line. Exit status: 0 done; 1 the input or the work failed, with one line on standard error; 2 wrong usage.
+
+mod demo;
+mod interrupt;
+mod simulate;
+
+use crate::command::{Command, read_script};
+use crate::document::Document;
+use crate::drawing::{Stage, drawing};
+use crate::inspect::inspect;
+use crate::project::{DEFAULT_STITCH_WIDTH, Project};
+use crate::{export, files};
+use anyhow::{Context, Result, bail};
+use clap::{Parser, Subcommand, ValueEnum};
+use render::{Camera, Gpu, NamedView, render_image};
+use serde_json::json;
+use sim_core::curves;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use stitch_mesh::obj::Unit;
+use stitch_mesh::tessellate::StitchSize;
+
+/// An editor for knitted fabric, with the yarn simulated live.
+#[derive(Parser)]
+#[command(name = "purlwise", version, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    /// What to open in the window: a project (.purl) or a mesh (.obj, in metres)
+    file: Option<PathBuf>,
+    #[command(subcommand)]
+    verb: Option<Verb>,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Takes the bundled pullover through the whole flow, without a window: pictures and figures
+    Demo {
+        /// Folder for the results
+        #[arg(long, default_value = "out/demo")]
+        out: PathBuf,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Makes a project from a mesh
+    New {
+        mesh: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        /// Width of a stitch in millimetres
+        #[arg(long, value_name = "MM", default_value_t = DEFAULT_STITCH_WIDTH * 1e3)]
+        stitch_size: f64,
+        /// Unit of the mesh
+        #[arg(long, value_enum, default_value = "m")]
+        unit: UnitName,
+        /// Labelling commands, one a line; without it the mesh labels itself
+        #[arg(long)]
+        script: Option<PathBuf>,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Runs a script of commands, one JSON object a line
+    Edit {
+        project: PathBuf,
+        script: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Lets the yarn find its rest shape, without gravity
+    Relax {
+        project: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        /// What to relax
+        #[arg(long, value_enum, default_value = "contact")]
+        stage: RelaxStage,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Simulates a scene
+    Simulate {
+        project: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        /// free, ground, sphere, form, or a file; the project's own scene if absent
+        #[arg(long)]
+        scene: Option<String>,
+        /// Simulated time
+        #[arg(long, default_value_t = 1.0)]
+        seconds: f64,
+        /// Where to compute
+        #[arg(long, value_enum, default_value = "cpu")]
+        solver: Solver,
+        /// Folder for one picture every 1/30 s
+        #[arg(long)]
+        frames: Option<PathBuf>,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Draws a picture
+    Render {
+        project: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        /// What to draw; the last stage reached if absent
+        #[arg(long, value_enum)]
+        stage: Option<Stage>,
+        /// front, back, left, right, top, bottom or three-quarter
+        #[arg(long, default_value = "three-quarter")]
+        view: NamedView,
+        /// Width and height in pixels, as in 1280x960
+        #[arg(long, default_value = "1280x960", value_parser = parse_size)]
+        size: [u32; 2],
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Writes the yarn as curves (.bcc, .obj, .usda)
+    Export {
+        project: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Facts about a project
+    Inspect {
+        project: PathBuf,
+        #[command(flatten)]
+        print: Output,
+    },
+}
+
+#[derive(clap::Args, Clone, Copy)]
+struct Output {
+    /// Prints one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+impl Output {
+    /// Prints the result of a verb.
+    #[allow(clippy::print_stdout, reason = "this is where a verb's result goes to standard output")]
+    fn print(self, json: &serde_json::Value, text: &dyn std::fmt::Display) {
+        if self.json { println!("{json}") } else { println!("{text}") }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum RelaxStage {
+    Contact,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Solver {
+    Cpu,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum UnitName {
+    Mm,
+    Cm,
+    Dm,
+    M,
+    In,
+}
+
+impl From<UnitName> for Unit {
+    fn from(name: UnitName) -> Self {
+        match name {
+            UnitName::Mm => Self::Mm,
+            UnitName::Cm => Self::Cm,
+            UnitName::Dm => Self::Dm,
+            UnitName::M => Self::M,
+            UnitName::In => Self::In,
+        }
+    }
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let (w, h) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 1280x960")?;
+    let side = |s: &str| s.parse().ok().filter(|n| (1..=16384).contains(n));
+    match (side(w), side(h)) {
+        (Some(w), Some(h)) => Ok([w, h]),
+        _ => Err(format!("'{text}' is not a size from 1x1 to 16384x16384")),
+    }
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_max_level(tracing::Level::WARN)
+        .without_time()
+        .init();
+    let arguments = Arguments::parse();
+    match run(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line: the causes after each other.
+            let line = format!("{error:#}").replace('\n', "; ");
+            let _ =
+                std::io::Write::write_all(&mut std::io::stderr(), format!("purlwise: {line}\n").as_bytes());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<()> {
+    let Some(verb) = arguments.verb else {
+        let project = arguments.file.as_deref().map(open_any).transpose()?;
+        return crate::window::run(project, arguments.file);
+    };
+    match verb {
+        Verb::Demo { out, output } => demo::run(&out, output),
+        Verb::New { mesh, output, stitch_size, unit, script, print } => {
+            let project = new(&mesh, unit.into(), stitch_size, script.as_deref())?;
+            project.save(&output)?;
+            report(&project, print)
+        }
+        Verb::Edit { project, script, output, print } => {
+            let text = String::from_utf8(files::read(&script)?)
+                .with_context(|| format!("{} is not text", script.display()))?;
+            let project =
+                perform(Project::open(&project)?, &text).with_context(|| script.display().to_string())?;
+            project.save(&output)?;
+            report(&project, print)
+        }
+        Verb::Relax { project, output, stage: RelaxStage::Contact, print } => {
+            let project = simulate::relax(Project::open(&project)?)?;
+            project.save(&output)?;
+            report(&project, print)
+        }
+        Verb::Simulate { project, output, scene, seconds, solver: Solver::Cpu, frames, print } => {
+            let project = Project::open(&project)?;
+            let project = simulate::simulate(project, scene.as_deref(), seconds, frames.as_deref())?;
+            project.save(&output)?;
+            report(&project, print)
+        }
+        Verb::Render { project, output, stage, view, size, print } => {
+            let project = Project::open(&project)?;
+            let stage = stage.unwrap_or(match project.fabric {
+                Some(_) => Stage::Yarn,
+                None => Stage::Labels,
+            });
+            picture(&Gpu::headless()?, &project, stage, view, size, &output)?;
+            print.print(&json!({"file": output, "size": size}), &output.display());
+            Ok(())
+        }
+        Verb::Export { project, output, print } => {
+            let project = Project::open(&project)?;
+            let fabric = project.fabric()?;
+            let curves = curves(&fabric.net, &fabric.state(), project.material.drawn_radius);
+            files::write(&output, &export::encode(&curves, &output)?)?;
+            let points: usize = curves.curves.iter().map(|c| c.points.len()).sum();
+            let facts = json!({"file": output, "yarns": curves.curves.len(), "points": points});
+            print.print(&facts, &format!("{} yarns, {points} points", curves.curves.len()));
+            Ok(())
+        }
+        Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
+    }
+}
+
+/// Opens a project, or a mesh in metres as a new project.
+pub(crate) fn open_any(path: &Path) -> Result<Project> {
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("purl") => Project::open(path),
+        Some("obj") => Project::from_obj(path, Unit::M, StitchSize::of_width(DEFAULT_STITCH_WIDTH)),
+        _ => bail!("cannot open {}: the name has to end in .purl or .obj", path.display()),
+    }
+}
+
+/// A project from a mesh: labelled, and tessellated where the labels allow it.
+fn new(mesh: &Path, unit: Unit, stitch_mm: f64, script: Option<&Path>) -> Result<Project> {
+    if !(0.1..=1000.0).contains(&stitch_mm) {
+        bail!("a stitch of {stitch_mm} mm cannot be knitted: --stitch-size goes from 0.1 to 1000");
+    }
+    let project = Project::from_obj(mesh, unit, StitchSize::of_width(stitch_mm * 1e-3))?;
+    let project = match script {
+        Some(script) => {
+            let text = String::from_utf8(files::read(script)?)
+                .with_context(|| format!("{} is not text", script.display()))?;
+            perform(project, &text).with_context(|| script.display().to_string())?
+        }
+        None => Command::Autolabel.apply(&project)?,
+    };
+    if project.fabric.is_some() {
+        return Ok(project);
+    }
+    match project.labelled.problems().len() {
+        0 => Command::Tessellate { width_mm: stitch_mm }.apply(&project),
+        _ => Ok(project), // the report says what could not be decided
+    }
+}
+
+/// Runs a script of commands.
+fn perform(project: Project, script: &str) -> Result<Project> {
+    let mut document = Document::new(project);
+    for (number, command) in read_script(script)? {
+        document.apply(command).with_context(|| format!("line {number}"))?;
+    }
+    Ok(document.project().clone())
+}
+
+/// Prints the facts of a project.
+fn report(project: &Project, print: Output) -> Result<()> {
+    let facts = inspect(project);
+    print.print(&serde_json::to_value(&facts)?, &facts);
+    Ok(())
+}
+
+/// Draws one stage of a project into a PNG file.
+fn picture(
+    gpu: &Gpu,
+    project: &Project,
+    stage: Stage,
+    view: NamedView,
+    size: [u32; 2],
+    path: &Path,
+) -> Result<()> {
+    let drawing = drawing(project, stage)?;
+    let bounds = drawing.bounds().context("there is nothing to draw")?;
+    let camera = Camera::named(view, bounds, size[0] as f32 / size[1] as f32);
+    let image = render_image(gpu, size, &camera, &drawing)?;
+    files::write_png(path, &image)
+}

@@ -1,0 +1,98 @@
+//! Simulation without a window: relaxing, scenes, frames.
+
+use super::interrupt::{interrupted, progress_bar};
+use super::picture;
+use crate::drawing::Stage;
+use crate::project::Project;
+use crate::scenes;
+use anyhow::{Result, bail};
+use render::{Gpu, NamedView};
+use sim_core::{Scene, SettleGoal, Settled, Simulator};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Speed under which a fabric counts as at rest [m/s]: a loop's width in ten seconds or so.
+const STILL: f64 = 1e-3;
+
+/// Simulated time after which a relaxation ends even if something still creeps [s].
+const RELAX_LIMIT: f64 = 3.0;
+
+/// Time between two pictures [s].
+const FRAME: f64 = 1.0 / 30.0;
+
+/// Lets the yarn come to rest without gravity.
+pub fn relax(project: Project) -> Result<Project> {
+    let scene = Scene { time_step: project.scene.time_step, ..Scene::empty() };
+    settle(project, scene, RELAX_LIMIT, "relaxing")
+}
+
+/// Simulates until the fabric is at rest, or for a time [s].
+pub fn settle(mut project: Project, scene: Scene, limit: f64, what: &'static str) -> Result<Project> {
+    let mut simulator = start(&project, &scene)?;
+    let bar = progress_bar(limit, what)?;
+    let goal = SettleGoal { speed: STILL, time_limit_s: limit };
+    let settled = simulator.settle(goal, &mut |progress| {
+        bar.set_position((1e3 * progress.time_s) as u64);
+        if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    bar.finish_and_clear();
+    if settled == Settled::Interrupted {
+        bail!("stopped; nothing was written");
+    }
+    project.scene = scene;
+    store(&mut project, &simulator);
+    Ok(project)
+}
+
+/// Simulates a scene for some seconds, with a picture every frame if a folder is given.
+pub fn simulate(
+    mut project: Project,
+    scene: Option<&str>,
+    seconds: f64,
+    frames: Option<&Path>,
+) -> Result<Project> {
+    if !(seconds > 0.0 && seconds <= 3600.0) {
+        bail!("cannot simulate {seconds} s: --seconds goes up to 3600");
+    }
+    if let Some(name) = scene {
+        project.scene = scenes::scene(name, &project.fabric()?.state())?;
+    }
+    let mut simulator = start(&project, &project.scene)?;
+    let camera =
+        frames.map(|folder| std::fs::create_dir_all(folder).map(|()| Gpu::headless())).transpose()?;
+    let gpu = camera.transpose()?;
+    let bar = progress_bar(seconds, "simulating")?;
+    let mut frame = 0;
+    while simulator.time_s() < seconds - 1e-9 {
+        if interrupted() {
+            bail!("stopped at {:.3} s; nothing was written", simulator.time_s());
+        }
+        if let (Some(folder), Some(gpu)) = (frames, &gpu)
+            && simulator.time_s() >= f64::from(frame) * FRAME
+        {
+            store(&mut project, &simulator);
+            let path = folder.join(format!("{frame:05}.png"));
+            picture(gpu, &project, Stage::Yarn, NamedView::ThreeQuarter, [960, 720], &path)?;
+            frame += 1;
+        }
+        simulator.step()?;
+        bar.set_position((1e3 * simulator.time_s()) as u64);
+    }
+    bar.finish_and_clear();
+    store(&mut project, &simulator);
+    Ok(project)
+}
+
+fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
+    let fabric = project.fabric()?;
+    let state = (*fabric.state()).clone();
+    Ok(Simulator::new(&fabric.net, project.material.clone(), scene.clone(), state)?)
+}
+
+fn store(project: &mut Project, simulator: &Simulator) {
+    if let Some(fabric) = &mut project.fabric {
+        fabric.state = Some(Arc::new(simulator.state().clone()));
+        fabric.facts = Some(simulator.facts());
+    }
+}

@@ -1,0 +1,204 @@
+//! The document: a project and the history of what was done to it.
+
+use crate::command::Command;
+use crate::project::Project;
+use anyhow::Result;
+use sim_core::Facts;
+use std::sync::Arc;
+use stitch_mesh::yarn_net::YarnState;
+
+/// A project that is being edited. Needs no window.
+#[derive(Clone, Debug)]
+pub struct Document {
+    project: Project,
+    done: Vec<Step>,
+    undone: Vec<Step>,
+}
+
+/// A command and the project on its other side: before it when done, after it when undone.
+#[derive(Clone, Debug)]
+struct Step {
+    command: Command,
+    project: Project,
+}
+
+impl Document {
+    /// A document without history.
+    pub fn new(project: Project) -> Self {
+        Self { project, done: Vec::new(), undone: Vec::new() }
+    }
+
+    /// The project now.
+    pub fn project(&self) -> &Project {
+        &self.project
+    }
+
+    /// Does a command. What had been undone is forgotten.
+    ///
+    /// # Errors
+    /// Why it cannot be done; nothing has changed then.
+    pub fn apply(&mut self, command: Command) -> Result<()> {
+        let after = command.apply(&self.project)?;
+        let before = std::mem::replace(&mut self.project, after);
+        self.done.push(Step { command, project: before });
+        self.undone.clear();
+        Ok(())
+    }
+
+    /// Does a command in place of the last one, as a brush does that has reached one more face: there is still one step to
+    /// undo.
+    ///
+    /// # Errors
+    /// Why it cannot be done; nothing has changed then.
+    pub fn amend(&mut self, command: Command) -> Result<()> {
+        let Some(last) = self.done.last_mut() else { return self.apply(command) };
+        self.project = command.apply(&self.project)?;
+        last.command = merge(&last.command, command);
+        self.undone.clear();
+        Ok(())
+    }
+
+    /// Takes back the last command. False if there is none.
+    pub fn undo(&mut self) -> bool {
+        swap(&mut self.done, &mut self.undone, &mut self.project)
+    }
+
+    /// Does again what was taken back last. False if there is none.
+    pub fn redo(&mut self) -> bool {
+        swap(&mut self.undone, &mut self.done, &mut self.project)
+    }
+
+    /// Commands done so far, oldest first.
+    pub fn done(&self) -> impl ExactSizeIterator<Item = &Command> {
+        self.done.iter().map(|s| &s.command)
+    }
+
+    /// The command that [`Self::redo`] would do.
+    pub fn next_redo(&self) -> Option<&Command> {
+        self.undone.last().map(|s| &s.command)
+    }
+
+    /// Takes over where the simulation has brought the yarn. No step of the history: time is not undone, edits are. A state
+    /// of another net (one from before an edit) is dropped.
+    pub fn set_state(&mut self, state: Arc<YarnState>, facts: Option<Facts>) {
+        if let Some(fabric) = &mut self.project.fabric
+            && state.fits(&fabric.net)
+            && state.is_finite()
+        {
+            fabric.state = Some(state);
+            fabric.facts = facts;
+        }
+    }
+}
+
+fn swap(from: &mut Vec<Step>, to: &mut Vec<Step>, project: &mut Project) -> bool {
+    let Some(Step { command, project: mut restored }) = from.pop() else { return false };
+    // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
+    if command != Command::ResetYarn {
+        restored.keep_yarn_of(project);
+    }
+    let other_side = std::mem::replace(project, restored);
+    to.push(Step { command, project: other_side });
+    true
+}
+
+/// One command that does what two of the same brush did.
+fn merge(first: &Command, second: Command) -> Command {
+    match (first, second) {
+        (Command::SetStitch { faces, stitch: a }, Command::SetStitch { faces: more, stitch })
+            if *a == stitch =>
+        {
+            let mut faces = faces.clone();
+            faces.extend(more.iter().filter(|f| !faces.contains(f)).copied().collect::<Vec<_>>());
+            Command::SetStitch { faces, stitch }
+        }
+        (_, second) => second,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{read_script, write_script};
+    use crate::project::Fabric;
+    use stitch_mesh::pieces::rectangle;
+    use stitch_mesh::stitch::Stitch;
+    use stitch_mesh::tessellate::StitchSize;
+
+    fn document() -> Document {
+        let size = StitchSize::of_width(0.004);
+        let stitches = rectangle(6, 4, size).unwrap();
+        let mut project = Project::new(stitches.mesh().clone(), size);
+        project.fabric = Some(Fabric::new(stitches));
+        Document::new(project)
+    }
+
+    fn purls(document: &Document) -> usize {
+        let stitches = document.project().fabric().unwrap().stitches.stitches().to_vec();
+        stitches.iter().filter(|s| **s == Stitch::purl()).count()
+    }
+
+    #[test]
+    fn undo_and_redo_walk_the_history() {
+        let mut document = document();
+        let purl = |faces: &[u32]| Command::SetStitch { faces: faces.to_vec(), stitch: Stitch::purl() };
+        document.apply(purl(&[0, 1])).unwrap();
+        document.apply(purl(&[2])).unwrap();
+        assert_eq!(purls(&document), 3);
+        assert!(document.undo() && document.undo() && !document.undo());
+        assert_eq!(purls(&document), 0);
+        assert!(document.redo());
+        assert_eq!(purls(&document), 2);
+        document.apply(purl(&[5])).unwrap();
+        assert!(!document.redo(), "what was undone is forgotten after a new command");
+    }
+
+    #[test]
+    fn a_brush_stroke_is_one_step() {
+        let mut document = document();
+        let purl = |face| Command::SetStitch { faces: vec![face], stitch: Stitch::purl() };
+        document.apply(purl(3)).unwrap();
+        document.amend(purl(4)).unwrap();
+        document.amend(purl(4)).unwrap();
+        assert_eq!(
+            document.done().collect::<Vec<_>>(),
+            [&Command::SetStitch { faces: vec![3, 4], stitch: Stitch::purl() }]
+        );
+        assert!(document.undo());
+        assert_eq!(purls(&document), 0);
+    }
+
+    #[test]
+    fn a_failed_command_changes_nothing() {
+        let mut document = document();
+        let error =
+            document.apply(Command::SetStitch { faces: vec![0, 99], stitch: Stitch::purl() }).unwrap_err();
+        assert_eq!(error.to_string(), "there is no face 99: the faces are 0–23");
+        assert_eq!((purls(&document), document.done().len()), (0, 0));
+        assert!(
+            document.apply(Command::SetStitch { faces: vec![0], stitch: "kp".parse().unwrap() }).is_err()
+        );
+    }
+
+    #[test]
+    fn a_script_does_what_the_history_did() {
+        let mut document = document();
+        document.apply(Command::Autolabel).unwrap();
+        document.apply(Command::Tessellate { width_mm: 2.0 }).unwrap();
+        document.apply(Command::SetChart { chart: vec!["k p".into()], rows: Some([1, 2]) }).unwrap();
+        let script = write_script(document.done()).unwrap();
+        let mut again = Document::new(self::document().project().clone());
+        for (_, command) in read_script(&script).unwrap() {
+            again.apply(command).unwrap();
+        }
+        let stitches = |d: &Document| d.project().fabric().unwrap().stitches.clone();
+        assert_eq!(stitches(&again), stitches(&document));
+        assert!(purls(&again) > 0);
+        assert!(
+            read_script("{\"do\":\"autolabel\"}\n{\"do\":\"dance\"}")
+                .unwrap_err()
+                .to_string()
+                .contains("line 2")
+        );
+    }
+}

@@ -1,0 +1,142 @@
+//! Pictures of a project, stage by stage: what the renderer is given.
+
+use crate::project::Project;
+use anyhow::Result;
+use glam::{DVec3, Vec3};
+use render::{Drawing, Faces, Lines, Polygon, Segment, Solid, Solids, palette};
+use sim_core::{Body, Scene, curves};
+use stitch_mesh::ids::EdgeId;
+use stitch_mesh::label::{EdgeLabel, LabelledMesh};
+use stitch_mesh::mesh::PolygonMesh;
+use stitch_mesh::stitch_mesh::StitchMesh;
+
+/// What to show of a project.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Stage {
+    /// The input mesh.
+    Mesh,
+    /// Its rows and labels.
+    Labels,
+    /// The stitch mesh.
+    Stitches,
+    /// The yarn.
+    Yarn,
+}
+
+impl Stage {
+    /// All stages, in the order of the flow.
+    pub const ALL: [Self; 4] = [Self::Mesh, Self::Labels, Self::Stitches, Self::Yarn];
+}
+
+/// The picture of one stage.
+///
+/// # Errors
+/// The stage has not been reached yet.
+pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
+    let labelled = &project.labelled;
+    Ok(match stage {
+        Stage::Mesh => mesh_drawing(labelled.mesh()),
+        Stage::Labels => label_drawing(labelled),
+        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches),
+        Stage::Yarn => {
+            let fabric = project.fabric()?;
+            let yarn = curves(&fabric.net, &fabric.state(), project.material.drawn_radius);
+            Drawing { yarn, solids: solids(&project.scene), ..Drawing::default() }
+        }
+    })
+}
+
+/// The polygons of a mesh, coloured face by face.
+pub fn faces(mesh: &PolygonMesh, color: impl Fn(usize) -> [f32; 3]) -> Faces {
+    let vertices = |f| mesh.face_vertices(f).map(|v| v.0).collect();
+    Faces {
+        positions: mesh.positions().iter().map(|p| p.as_vec3()).collect(),
+        polygons: mesh.faces().map(|f| Polygon { vertices: vertices(f), color: color(f.index()) }).collect(),
+    }
+}
+
+/// The edge as a line on the screen.
+pub fn edge_line(mesh: &PolygonMesh, edge: EdgeId, color: [f32; 3], width: f32) -> Segment {
+    Segment { ends: mesh.edge_ends(edge).map(|v| mesh.position(v).as_vec3()), color, width }
+}
+
+fn mesh_drawing(mesh: &PolygonMesh) -> Drawing {
+    let lines = mesh.edges().map(|e| edge_line(mesh, e, palette::UNLABELLED_EDGE, 1.5));
+    Drawing {
+        faces: faces(mesh, |_| palette::UNLABELLED_FACE),
+        lines: Lines { segments: lines.collect() },
+        ..Drawing::default()
+    }
+}
+
+/// Rows in colours, course edges and wale edges in two more, an arrow up each wale.
+fn label_drawing(labelled: &LabelledMesh) -> Drawing {
+    let mesh = labelled.mesh();
+    let mut row_of = vec![None; mesh.face_count()];
+    for (r, row) in labelled.rows().iter().enumerate() {
+        row.faces.iter().for_each(|f| row_of[f.index()] = Some(r));
+    }
+    let mut segments: Vec<Segment> = mesh
+        .edges()
+        .map(|e| match labelled.label(e) {
+            Some(EdgeLabel::Course) => edge_line(mesh, e, palette::COURSE_EDGE, 3.0),
+            Some(EdgeLabel::Wale) => edge_line(mesh, e, palette::WALE_EDGE, 2.0),
+            None => edge_line(mesh, e, palette::UNLABELLED_EDGE, 1.5),
+        })
+        .collect();
+    for face in mesh.faces() {
+        let Some(wales) = labelled.wales(face) else { continue };
+        let middle = |h| (mesh.position(mesh.origin(h)) + mesh.position(mesh.tip(h))) / 2.0;
+        let mean = |points: Vec<DVec3>, or: DVec3| match points.len() {
+            0 => or,
+            n => points.iter().sum::<DVec3>() / n as f64,
+        };
+        let bottom = mean(
+            labelled.bottoms(wales).into_iter().map(middle).collect(),
+            mesh.position(mesh.origin(wales.right)),
+        );
+        let top = mean(
+            labelled.tops(wales).into_iter().map(middle).collect(),
+            mesh.position(mesh.tip(wales.right)),
+        );
+        let side = (middle(wales.right) - middle(wales.left)) * 0.12;
+        let (from, to) = (bottom.lerp(top, 0.3), bottom.lerp(top, 0.7));
+        let barb = bottom.lerp(top, 0.5);
+        for [a, b] in [[from, to], [to, barb + side], [to, barb - side]] {
+            segments.push(Segment { ends: [a.as_vec3(), b.as_vec3()], color: [0.05; 3], width: 1.5 });
+        }
+    }
+    let color = |f: usize| row_of[f].map_or(palette::UNLABELLED_FACE, palette::row);
+    Drawing { faces: faces(mesh, color), lines: Lines { segments }, ..Drawing::default() }
+}
+
+fn stitch_drawing(stitches: &StitchMesh) -> Drawing {
+    let mesh = stitches.mesh();
+    let mut row_of = vec![0; mesh.face_count()];
+    for (r, row) in stitches.rows().iter().enumerate() {
+        row.faces.iter().for_each(|f| row_of[f.index()] = r);
+    }
+    let symbols: Vec<String> = stitches.stitches().iter().map(ToString::to_string).collect();
+    let lines = mesh.edges().map(|e| {
+        let wale = stitches.is_wale(mesh.edge_sides(e).0);
+        edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })
+    });
+    Drawing {
+        faces: faces(mesh, |f| palette::stitch(&symbols[f], row_of[f])),
+        lines: Lines { segments: lines.collect() },
+        ..Drawing::default()
+    }
+}
+
+/// The bodies of a scene.
+pub fn solids(scene: &Scene) -> Solids {
+    let v = |p: DVec3| -> Vec3 { p.as_vec3() };
+    let solid = |body: &Body| match *body {
+        Body::Ground { height, .. } => Solid::Ground { height: height as f32 },
+        Body::Sphere { center, radius, .. } => Solid::Sphere { center: v(center), radius: radius as f32 },
+        Body::Capsule { from, to, radius, .. } => {
+            Solid::Capsule { ends: [v(from), v(to)], radius: radius as f32 }
+        }
+    };
+    Solids { solids: scene.bodies.iter().map(solid).collect() }
+}

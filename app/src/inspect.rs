@@ -1,0 +1,161 @@
+//! Facts about a project, for people and scripts.
+
+use crate::project::{Fabric, Project};
+use glam::DVec3;
+use serde::Serialize;
+use sim_core::Facts;
+use std::collections::BTreeMap;
+use stitch_mesh::ids::{FaceId, VisitId};
+
+/// Something that keeps the project from being knitted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Problem {
+    /// Where, as in `face 12`.
+    pub r#where: String,
+    /// What, in a knitter's words.
+    pub what: String,
+}
+
+/// How many pieces of yarn there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct YarnCount {
+    /// With two ends.
+    pub open: usize,
+    /// Rings.
+    pub closed: usize,
+}
+
+/// Facts about a project. Before there are stitches, those of the input mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Inspection {
+    /// Faces: stitches, or faces of the input mesh.
+    pub faces: usize,
+    /// Rows of them.
+    pub rows: usize,
+    /// Loops.
+    pub loops: usize,
+    /// Nodes at which yarns touch.
+    pub contact_nodes: usize,
+    /// Degrees of freedom of the simulation.
+    pub dofs: usize,
+    /// Pieces of yarn.
+    pub yarns: YarnCount,
+    /// How often each stitch occurs.
+    pub stitches: BTreeMap<String, usize>,
+    /// Edges marked as cables.
+    pub cable_edges: usize,
+    /// Edges with a face on one side only.
+    pub boundary_edges: usize,
+    /// Mean distance from a row to the next [mm].
+    pub mean_course_spacing_mm: f64,
+    /// Mean distance from a stitch to the next in its row [mm].
+    pub mean_wale_spacing_mm: f64,
+    /// Unstretched length of all yarn [m].
+    pub yarn_length_m: f64,
+    /// Extent in x, y, z [mm].
+    pub size_mm: [f64; 3],
+    /// What keeps the mesh from being knitted.
+    pub problems: Vec<Problem>,
+    /// Figures of the last simulation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sim: Option<Facts>,
+}
+
+/// Measures a project.
+pub fn inspect(project: &Project) -> Inspection {
+    let labelled = &project.labelled;
+    let problems = labelled
+        .problems()
+        .into_iter()
+        .map(|p| Problem { r#where: format!("face {}", p.face()), what: p.to_string() });
+    let mesh = project.fabric.as_ref().map_or(labelled.mesh(), |f| f.stitches.mesh());
+    let [low, high] = mesh.bounds();
+    let facts = Inspection {
+        faces: mesh.face_count(),
+        rows: labelled.rows().len(),
+        boundary_edges: mesh.edges().filter(|e| mesh.is_border(*e)).count(),
+        size_mm: ((high - low) * 1e3).to_array(),
+        problems: problems.collect(),
+        ..Inspection::default()
+    };
+    match &project.fabric {
+        Some(fabric) => with_fabric(facts, fabric),
+        None => facts,
+    }
+}
+
+fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
+    let Fabric { stitches, net, .. } = fabric;
+    let state = fabric.state();
+    facts.rows = stitches.rows().len();
+    facts.loops = stitches.loop_count();
+    facts.contact_nodes = net.nodes.iter().filter(|n| n.visits.len() > 1).count();
+    let sliding = (0..net.visits.len()).filter(|v| !net.is_frozen(VisitId::new(*v))).count();
+    facts.dofs = 3 * net.nodes.len() + sliding;
+    facts.yarns.closed = net.yarns.iter().filter(|y| y.period.is_some()).count();
+    facts.yarns.open = net.yarns.len() - facts.yarns.closed;
+    for stitch in stitches.stitches() {
+        *facts.stitches.entry(stitch.to_string()).or_default() += 1;
+    }
+    facts.yarn_length_m =
+        net.yarns.iter().map(|y| y.period.unwrap_or(net.visits[y.visits.end as usize - 1].u)).sum();
+
+    let mut centers = vec![(DVec3::ZERO, 0.0); stitches.mesh().face_count()];
+    for (node, position) in net.nodes.iter().zip(&state.position) {
+        if let Some(face) = node.face {
+            let (sum, count) = &mut centers[face.index()];
+            (*sum, *count) = (*sum + *position, *count + 1.0);
+        }
+    }
+    let center = |f: FaceId| centers[f.index()].0 / f64::max(centers[f.index()].1, 1.0);
+    let mean = |pairs: Vec<(FaceId, FaceId)>| {
+        let total: f64 = pairs.iter().map(|(a, b)| center(*a).distance(center(*b))).sum();
+        1e3 * total / pairs.len().max(1) as f64
+    };
+    let faces = || stitches.mesh().faces();
+    facts.mean_course_spacing_mm =
+        mean(faces().flat_map(|f| stitches.above(f).map(move |a| (f, a))).collect());
+    let beside = |f: FaceId| Some((f, stitches.mesh().face_across(stitches.right(f))?));
+    facts.mean_wale_spacing_mm = mean(faces().filter_map(beside).collect());
+    let (low, high) = state
+        .position
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+    facts.size_mm = ((high - low) * 1e3).to_array();
+    facts.sim = fabric.facts.clone();
+    facts
+}
+
+impl std::fmt::Display for Inspection {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "{} faces in {} rows, {} boundary edges", self.faces, self.rows, self.boundary_edges)?;
+        if self.loops > 0 {
+            let stitches: Vec<String> = self.stitches.iter().map(|(s, n)| format!("{n} {s}")).collect();
+            writeln!(f, "{} loops: {}", self.loops, stitches.join(", "))?;
+            writeln!(f, "{} contact nodes, {} degrees of freedom", self.contact_nodes, self.dofs)?;
+            let YarnCount { open, closed } = self.yarns;
+            writeln!(f, "{:.2} m of yarn: {open} pieces with ends, {closed} rings", self.yarn_length_m)?;
+            let (course, wale) = (self.mean_course_spacing_mm, self.mean_wale_spacing_mm);
+            writeln!(f, "rows {course:.2} mm apart, stitches {wale:.2} mm")?;
+        }
+        let [x, y, z] = self.size_mm;
+        write!(f, "{x:.0} × {y:.0} × {z:.0} mm")?;
+        for problem in &self.problems {
+            write!(f, "\n{}", problem.what)?;
+        }
+        if let Some(sim) = &self.sim {
+            write!(
+                f,
+                "\nsimulated {:.2} s in {} steps ({} taken again): stretched at most {:.2} %, yarns at least {:.2} diameters \
+                 apart, {:.2} mm into bodies",
+                sim.time_s,
+                sim.steps,
+                sim.rejected_steps,
+                100.0 * sim.max_stretch,
+                sim.min_yarn_distance_over_diameter,
+                sim.max_penetration_mm
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,268 @@
+//! A project: everything that a `.purl` file holds.
+//!
+//! The parts are shared, never changed in place: a changed project is a new one that shares what stayed the same. So undo
+//! keeps whole projects cheaply, and threads hand them to each other.
+//!
+//! The file is JSON, `{"purlwise": 1, …}`. Half-edge structures are built again on reading, and so is the yarn net, which
+//! follows from the stitch mesh; the state of the yarn has to fit it.
+
+use crate::files;
+use anyhow::{Context, Result, bail};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use sim_core::{Facts, Material, Scene, carry_over};
+use std::path::Path;
+use std::sync::Arc;
+use stitch_mesh::ids::HalfEdgeId;
+use stitch_mesh::label::{EdgeLabel, LabelledMesh};
+use stitch_mesh::lay::lay;
+use stitch_mesh::mesh::PolygonMesh;
+use stitch_mesh::obj::{Unit, read_obj};
+use stitch_mesh::stitch::Stitch;
+use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::tessellate::StitchSize;
+use stitch_mesh::yarn_net::{YarnNet, YarnState};
+
+/// Version of the file that this program writes, and the newest that it reads.
+const VERSION: u32 = 1;
+
+/// Stitch width when nobody has chosen one [m].
+pub const DEFAULT_STITCH_WIDTH: f64 = 0.010;
+
+/// A project. See the module.
+#[derive(Clone, Debug)]
+pub struct Project {
+    /// The input mesh with its labels.
+    pub labelled: Arc<LabelledMesh>,
+    /// Size of a stitch as laid.
+    pub size: StitchSize,
+    /// The yarn.
+    pub material: Material,
+    /// What surrounds the fabric in the simulation.
+    pub scene: Scene,
+    /// The fabric, once the mesh has been tessellated.
+    pub fabric: Option<Fabric>,
+}
+
+/// Stitches and their yarn.
+#[derive(Clone, Debug)]
+pub struct Fabric {
+    /// The stitch mesh.
+    pub stitches: Arc<StitchMesh>,
+    /// Its yarn as laid.
+    pub net: Arc<YarnNet>,
+    /// Where the yarn has got to, once something was simulated.
+    pub state: Option<Arc<YarnState>>,
+    /// Figures of that simulation.
+    pub facts: Option<Facts>,
+}
+
+impl Fabric {
+    /// The fabric of a stitch mesh, its yarn just laid.
+    pub fn new(stitches: StitchMesh) -> Self {
+        let net = Arc::new(lay(&stitches));
+        Self { stitches: Arc::new(stitches), net, state: None, facts: None }
+    }
+
+    /// Where the yarn is: the simulated state, or as laid.
+    pub fn state(&self) -> Arc<YarnState> {
+        self.state.clone().unwrap_or_else(|| Arc::new(self.net.laid_state()))
+    }
+}
+
+impl Project {
+    /// A project that begins with a mesh, without labels.
+    pub fn new(mesh: PolygonMesh, size: StitchSize) -> Self {
+        Self {
+            labelled: Arc::new(LabelledMesh::new(mesh)),
+            size,
+            material: Material::for_loop_width(size.width),
+            scene: Scene::empty(),
+            fabric: None,
+        }
+    }
+
+    /// A project that begins with a mesh file.
+    ///
+    /// # Errors
+    /// What is wrong with the file, by line or face.
+    pub fn from_obj(path: &Path, unit: Unit, size: StitchSize) -> Result<Self> {
+        let mesh = read_obj(&files::read(path)?, unit).with_context(|| path.display().to_string())?;
+        Ok(Self::new(mesh, size))
+    }
+
+    /// The fabric, or an error that says what to do first.
+    pub fn fabric(&self) -> Result<&Fabric> {
+        self.fabric.as_ref().context("the mesh has no stitches yet: label all its rows, then tessellate it")
+    }
+
+    /// Takes over where the yarn is in another project, as far as both have the same faces.
+    pub fn keep_yarn_of(&mut self, other: &Self) {
+        if let (Some(fabric), Some(from)) = (&mut self.fabric, &other.fabric)
+            && fabric.stitches.mesh() == from.stitches.mesh()
+        {
+            fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net)));
+            fabric.facts = from.facts.clone().filter(|_| Arc::ptr_eq(&fabric.net, &from.net));
+        }
+    }
+
+    /// Reads a `.purl` file.
+    ///
+    /// # Errors
+    /// A file that is not a project, is cut off, or is of a newer version, with line and column where there is one.
+    pub fn open(path: &Path) -> Result<Self> {
+        Self::from_json(&files::read(path)?).with_context(|| path.display().to_string())
+    }
+
+    /// Writes a `.purl` file, whole or not at all.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        files::write(path, &serde_json::to_vec(&File::of(self))?)
+    }
+
+    fn from_json(bytes: &[u8]) -> Result<Self> {
+        #[derive(Deserialize)]
+        struct Header {
+            purlwise: u32,
+        }
+        let header: Header = serde_json::from_slice(bytes).context("not a Purlwise project")?;
+        if header.purlwise > VERSION {
+            bail!(
+                "written by a newer Purlwise (file version {}, this program reads up to {VERSION})",
+                header.purlwise
+            );
+        }
+        serde_json::from_slice::<File>(bytes).context("not a Purlwise project")?.into_project()
+    }
+}
+
+/// The file, field by field.
+#[derive(Serialize, Deserialize)]
+struct File {
+    purlwise: u32,
+    mesh: FileMesh,
+    /// [edge_count], edges in order of first use by the faces.
+    labels: Vec<Option<EdgeLabel>>,
+    /// The rising wale half-edge of every face, [face_count].
+    rising: Vec<Option<HalfEdgeId>>,
+    stitch_size: StitchSize,
+    material: Material,
+    scene: Scene,
+    fabric: Option<FileFabric>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FileMesh {
+    positions: Vec<DVec3>,
+    faces: Vec<Vec<u32>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FileFabric {
+    mesh: FileMesh,
+    stitches: Vec<Stitch>,
+    state: Option<YarnState>,
+    facts: Option<Facts>,
+}
+
+impl FileMesh {
+    fn of(mesh: &PolygonMesh) -> Self {
+        Self { positions: mesh.positions().to_vec(), faces: mesh.face_lists() }
+    }
+}
+
+impl File {
+    fn of(project: &Project) -> Self {
+        let labelled = &project.labelled;
+        Self {
+            purlwise: VERSION,
+            mesh: FileMesh::of(labelled.mesh()),
+            labels: labelled.labels().to_vec(),
+            rising: labelled.mesh().faces().map(|f| labelled.wales(f).map(|w| w.right)).collect(),
+            stitch_size: project.size,
+            material: project.material.clone(),
+            scene: project.scene.clone(),
+            fabric: project.fabric.as_ref().map(|f| FileFabric {
+                mesh: FileMesh::of(f.stitches.mesh()),
+                stitches: f.stitches.stitches().to_vec(),
+                state: f.state.as_deref().cloned(),
+                facts: f.facts.clone(),
+            }),
+        }
+    }
+
+    fn into_project(self) -> Result<Project> {
+        let mesh = PolygonMesh::new(self.mesh.positions, &self.mesh.faces)?;
+        let labelled = LabelledMesh::from_parts(mesh, self.labels, &self.rising)
+            .context("the labels do not belong to the mesh")?;
+        self.material.validate().context("the material")?;
+        let mut project = Project {
+            labelled: Arc::new(labelled),
+            size: self.stitch_size,
+            material: self.material,
+            scene: self.scene,
+            fabric: None,
+        };
+        if let Some(file) = self.fabric {
+            let mesh = PolygonMesh::new(file.mesh.positions, &file.mesh.faces).context("the stitch mesh")?;
+            let mut fabric = Fabric::new(StitchMesh::new(mesh, file.stitches)?);
+            if let Some(state) = file.state {
+                if !state.fits(&fabric.net) || !state.is_finite() {
+                    bail!("the state of the yarn does not belong to the stitches");
+                }
+                fabric.state = Some(Arc::new(state));
+                fabric.facts = file.facts;
+            }
+            project.fabric = Some(fabric);
+        }
+        project.scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
+        Ok(project)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stitch_mesh::pieces::rectangle;
+
+    fn project() -> Project {
+        let size = StitchSize::of_width(0.004);
+        let stitches = rectangle(4, 3, size).unwrap();
+        let mut project = Project::new(stitches.mesh().clone(), size);
+        project.fabric = Some(Fabric::new(stitches));
+        project
+    }
+
+    #[test]
+    fn what_is_saved_is_read_again() {
+        let mut before = project();
+        let mut state = before.fabric().unwrap().net.laid_state();
+        state.position[3].x += 0.1 + 1e-17;
+        before.fabric.as_mut().unwrap().state = Some(Arc::new(state));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.purl");
+        before.save(&path).unwrap();
+        let after = Project::open(&path).unwrap();
+        assert_eq!(after.labelled, before.labelled);
+        assert_eq!(after.material, before.material);
+        let (a, b) = (after.fabric.unwrap(), before.fabric.unwrap());
+        assert_eq!(a.stitches, b.stitches);
+        assert_eq!(a.state, b.state);
+    }
+
+    #[test]
+    fn broken_files_say_what_is_wrong() {
+        let json = serde_json::to_string(&File::of(&project())).unwrap();
+        let error = |text: &str| format!("{:#}", Project::from_json(text.as_bytes()).unwrap_err());
+        assert!(error("").contains("not a Purlwise project"));
+        assert!(error(&json[..json.len() / 2]).contains("line 1 column"));
+        assert!(error(&json.replace("\"purlwise\":1", "\"purlwise\":2")).contains("newer Purlwise"));
+        assert!(
+            error(&json.replacen("\"labels\":[", "\"labels\":[null,", 1)).contains("labels do not belong")
+        );
+        assert!(error(&json.replacen("\"k\"", "\"kp\"", 1)).contains("face 0"));
+        assert!(error(&json.replacen("\"faces\":[[0", "\"faces\":[[99", 1)).contains("names vertex 99"));
+    }
+}

@@ -1,0 +1,105 @@
+//! Colours with a meaning, as linear RGB.
+
+/// Rows of labels take these in turn: the eight of Okabe and Ito without their black and grey, told apart by every kind
+/// of colour vision, in an order where neighbours differ in lightness too.
+const ROWS: [u32; 7] = [0x56b4e9, 0xd55e00, 0xf0e442, 0x0072b2, 0xe69f00, 0x009e73, 0xcc79a7];
+
+/// Odd rows of stitches are darker by this factor, so that rows can be counted.
+const ODD_ROW: f32 = 0.82;
+
+/// Course edges, along a row.
+pub const COURSE_EDGE: [f32; 3] = hex(0x2f6f9f);
+/// Wale edges, across the rows.
+pub const WALE_EDGE: [f32; 3] = hex(0xb3472f);
+/// Edges that have no label yet.
+pub const UNLABELLED_EDGE: [f32; 3] = hex(0x8a8780);
+/// Faces that have no row yet.
+pub const UNLABELLED_FACE: [f32; 3] = hex(0xd9d5cc);
+/// What the pointer is over.
+pub const HOVERED: [f32; 3] = hex(0xffffff);
+/// What is selected.
+pub const SELECTED: [f32; 3] = hex(0xffb000);
+/// Yarn nobody has chosen a colour for: undyed wool.
+pub const YARN: [f32; 3] = hex(0xe4d6bd);
+
+/// Colour of a row of labels.
+pub fn row(index: usize) -> [f32; 3] {
+    hex(ROWS[index % ROWS.len()])
+}
+
+/// Colour of a stitch by its symbol (`k`, `p`, `y`, `kp`, `d12k`, …) in a row.
+///
+/// Knit is a calm light sand, purl a clear blue, a yarn-over nearly white like the hole it makes. Decreases lean to red
+/// and increases to green, deeper when more stitches meet, bluer when they are purled.
+pub fn stitch(symbol: &str, row: usize) -> [f32; 3] {
+    let actions = || symbol.chars().filter(|c| matches!(c, 'k' | 'p' | 'y'));
+    let purled = actions().next() == Some('p');
+    let color = if let Some(order) = symbol.strip_prefix('d') {
+        let stacked = order.chars().filter(char::is_ascii_digit).count();
+        match (stacked, purled) {
+            (..=2, false) => 0xe39a72,
+            (..=2, true) => 0xb97a9e,
+            (_, false) => 0xcb6a4c,
+            (_, true) => 0x94527c,
+        }
+    } else {
+        match (actions().count(), purled) {
+            (1, _) if symbol.starts_with('y') => 0xf6f3ea,
+            (1, false) => 0xe3d6bb,
+            (1, true) => 0x7f9fbe,
+            (2, false) => 0xa9c47f,
+            (2, true) => 0x6fae9a,
+            (3.., false) => 0x7aa653,
+            (3.., true) => 0x468f7c,
+            _ => 0xb8b4ab, // nothing this palette knows
+        }
+    };
+    let shade = if row % 2 == 1 { ODD_ROW } else { 1.0 };
+    hex(color).map(|channel| channel * shade)
+}
+
+/// Linear RGB of a colour as written on the web. A `const` function, so it inverts the sRGB curve by the polynomial that
+/// is within 0.004 of it.
+const fn hex(rgb: u32) -> [f32; 3] {
+    [linear((rgb >> 16) as u8), linear((rgb >> 8) as u8), linear(rgb as u8)]
+}
+
+const fn linear(byte: u8) -> f32 {
+    let c = byte as f32 / 255.0;
+    c * (c * (c * 0.305_306 + 0.682_171_1) + 0.012_522_878)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
+        (0..3).map(|i| (a[i].powf(1.0 / 2.2) - b[i].powf(1.0 / 2.2)).powi(2)).sum::<f32>().sqrt()
+    }
+
+    #[test]
+    fn linear_inverts_the_srgb_curve() {
+        for byte in 0..=255 {
+            let c = byte as f32 / 255.0;
+            let exact = if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+            assert!((linear(byte) - exact).abs() < 0.004, "{byte}");
+        }
+    }
+
+    #[test]
+    fn neighbouring_rows_differ() {
+        assert!((0..14).all(|i| distance(row(i), row(i + 1)) > 0.25));
+    }
+
+    #[test]
+    fn kinds_of_stitches_differ() {
+        let kinds = ["k", "p", "y", "kp", "py", "kyk", "pyp", "d12k", "d21p", "d123k", "d312p"];
+        for (i, a) in kinds.iter().enumerate() {
+            for b in &kinds[..i] {
+                assert!(distance(stitch(a, 0), stitch(b, 0)) > 0.1, "{a} and {b}");
+            }
+        }
+        assert!(stitch("k", 1)[0] < stitch("k", 2)[0]);
+        assert_eq!(stitch("d12k", 0), stitch("d21k", 0));
+    }
+}

@@ -1,0 +1,119 @@
+//! A drawing on the GPU. Buffers live as long as the scene and grow; updating one part leaves the others alone, so that
+//! yarn can move every frame while everything else stays.
+
+use stitch_mesh::yarn_curves::YarnCurves;
+
+use crate::drawing::{Drawing, Faces, Lines};
+use crate::lines::LineMesh;
+use crate::surface::SurfaceMesh;
+use crate::yarn::YarnMesh;
+use crate::{Bounds, Gpu, RenderError, Solids};
+
+/// What to draw, on the GPU.
+#[derive(Debug)]
+pub struct Scene {
+    pub(crate) faces: SurfaceMesh,
+    pub(crate) solids: SurfaceMesh,
+    pub(crate) lines: LineMesh,
+    pub(crate) yarn: YarnMesh,
+    face_bounds: Option<Bounds>,
+    solid_bounds: Option<Bounds>,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Scene {
+    /// An empty scene.
+    pub fn new() -> Self {
+        Self {
+            faces: SurfaceMesh::new(),
+            solids: SurfaceMesh::new(),
+            lines: LineMesh::new(),
+            yarn: YarnMesh::new(),
+            face_bounds: None,
+            solid_bounds: None,
+        }
+    }
+
+    /// Replaces everything.
+    pub fn set(&mut self, gpu: &Gpu, drawing: &Drawing) -> Result<(), RenderError> {
+        self.set_faces(gpu, &drawing.faces)?;
+        self.set_lines(gpu, &drawing.lines)?;
+        self.set_solids(gpu, &drawing.solids)?;
+        self.set_yarn(gpu, &drawing.yarn)
+    }
+
+    /// Replaces the polygons.
+    pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces) -> Result<(), RenderError> {
+        self.face_bounds = Bounds::of(faces.positions.iter().copied());
+        self.faces.set_faces(gpu, faces)
+    }
+
+    /// Replaces the lines.
+    pub fn set_lines(&mut self, gpu: &Gpu, lines: &Lines) -> Result<(), RenderError> {
+        self.lines.set(gpu, lines)
+    }
+
+    /// Replaces the bodies.
+    pub fn set_solids(&mut self, gpu: &Gpu, solids: &Solids) -> Result<(), RenderError> {
+        self.solid_bounds = solids.bounds();
+        self.solids.set_solids(gpu, solids)
+    }
+
+    /// Replaces the yarn.
+    pub fn set_yarn(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
+        self.yarn.set(gpu, yarn)
+    }
+
+    /// The box around everything that casts a shadow, but the ground.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        [self.face_bounds, self.solid_bounds, self.yarn.bounds()].into_iter().flatten().reduce(Bounds::union)
+    }
+}
+
+/// A buffer that is replaced by a larger one when its contents outgrow it.
+#[derive(Debug)]
+pub(crate) struct GrowingBuffer {
+    what: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: Option<wgpu::Buffer>,
+}
+
+impl GrowingBuffer {
+    pub fn new(what: &'static str, usage: wgpu::BufferUsages) -> Self {
+        Self { what, usage: usage | wgpu::BufferUsages::COPY_DST, buffer: None }
+    }
+
+    /// The buffer, once something was written.
+    pub fn buffer(&self) -> Option<&wgpu::Buffer> {
+        self.buffer.as_ref()
+    }
+
+    /// Replaces the contents.
+    pub fn write(&mut self, gpu: &Gpu, bytes: &[u8], limit: u64) -> Result<(), RenderError> {
+        let needed = bytes.len() as u64;
+        if needed > limit {
+            return Err(RenderError::TooLarge { what: self.what, bytes: needed, limit });
+        }
+        if needed == 0 {
+            return Ok(());
+        }
+        let fits = |buffer: &wgpu::Buffer| buffer.size() >= needed;
+        let buffer = self.buffer.take().filter(fits).unwrap_or_else(|| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(self.what),
+                // A quarter more than needed: a fabric that grows by the row is not reallocated at every row.
+                size: (needed + needed / 4).next_multiple_of(16).min(limit),
+                usage: self.usage,
+                mapped_at_creation: false,
+            })
+        });
+        gpu.queue.write_buffer(&buffer, 0, bytes);
+        self.buffer = Some(buffer);
+        Ok(())
+    }
+}

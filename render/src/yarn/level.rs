@@ -1,0 +1,180 @@
+//! Level of detail: how finely a stretch of yarn is drawn, and whether at all.
+//!
+//! # Theory
+//!
+//! Yarn that is a few pixels wide is drawn as a flat ribbon that faces the eye, with the normals of a round yarn; wider
+//! yarn as a tube with enough sides for its outline. Along the yarn, a chord of length L of an arc of radius R misses it
+//! by L²/8R. The tightest bends of a knitted yarn have a radius of about one yarn diameter, so a chord may be as long as
+//! 4 √(error · radius) for an error in pixels and the yarn's radius in pixels.
+//!
+//! # Practice
+//!
+//! Every level draws a part of one fine grid of [`SAMPLES`] steps along a span by [`SIDES`] around it, so the vertex
+//! shader knows no levels, and the rings where two levels meet coincide.
+
+use glam::Vec3;
+
+/// Steps along a span in the finest level, a power of two.
+pub(crate) const SAMPLES: u32 = 16;
+/// Sides of a tube in the finest level.
+pub(crate) const SIDES: u32 = 24;
+/// Vertices of the finest grid of a span; its last ring is the first of the next span.
+pub(crate) const SPAN_VERTICES: u32 = SAMPLES * (SIDES + 1);
+/// Spans that one draw call can take.
+pub(crate) const RUN: u32 = 128;
+/// Sides of the tubes, finest last; each divides [`SIDES`]. The first stands for a ribbon.
+const TUBES: [u32; 5] = [1, 6, 8, 12, SIDES];
+/// From this of the tubes on, the yarn is wide enough to fray.
+const FRAYED: usize = 3;
+/// A tube of so many sides is used up to this radius [px], where the flat sides show by half a pixel or so.
+const TUBE_RADII: [f32; 4] = [5.0, 7.0, 13.0, 28.0];
+/// How far drawn yarn may lie beside the spline [px]: 0.5 is seen at the outline, 0.2 only costs time.
+const ERROR: f32 = 0.35;
+
+/// How finely to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Level {
+    /// Index into [`TUBES`].
+    tube: usize,
+    /// log₂ of the steps along a span.
+    samples: u32,
+}
+
+impl Level {
+    /// All levels, in the order of their `index`.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let samples = 0..=SAMPLES.ilog2();
+        (0..TUBES.len()).flat_map(move |tube| samples.clone().map(move |samples| Self { tube, samples }))
+    }
+
+    pub fn index(self) -> usize {
+        self.tube * (SAMPLES.ilog2() as usize + 1) + self.samples as usize
+    }
+
+    /// The level for yarn of a radius and a length of spans [px].
+    pub fn of(radius: f32, span: f32) -> Self {
+        let tube = TUBE_RADII.iter().filter(|&&limit| radius > limit).count();
+        let chord = 4.0 * (ERROR * radius.max(0.5)).sqrt();
+        let samples = (span / chord).log2().round().clamp(0.0, SAMPLES.ilog2() as f32) as u32;
+        Self { tube, samples }
+    }
+
+    /// The coarsest of ribbons with these steps: what casts shadows.
+    pub fn as_ribbon(self) -> Self {
+        Self { tube: 0, ..self }
+    }
+
+    pub fn is_ribbon(self) -> bool {
+        self.tube == 0
+    }
+
+    /// Whether single fibres show at the outline.
+    pub fn is_frayed(self) -> bool {
+        self.tube >= FRAYED
+    }
+
+    /// Triangles of a span, as numbers of vertices: step times ([`SIDES`] + 1) plus side, in steps of the finest level,
+    /// plus [`SPAN_VERTICES`] for each span before.
+    pub fn triangles(self, span: u32) -> Vec<u32> {
+        let (step, side) = (SAMPLES >> self.samples, SIDES / TUBES[self.tube]);
+        let at = |i: u32, j: u32| span * SPAN_VERTICES + i * (SIDES + 1) + j;
+        let mut out = Vec::new();
+        for i in (0..SAMPLES).step_by(step as usize) {
+            for j in (0..SIDES).step_by(side as usize) {
+                let [a, b, c, d] = [at(i, j), at(i, j + side), at(i + step, j + side), at(i + step, j)];
+                out.extend([a, b, c, a, c, d]);
+            }
+        }
+        out
+    }
+}
+
+/// A run of spans of one curve, culled and drawn together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chunk {
+    /// The first span: the index of its start in the buffer of control points.
+    pub first: u32,
+    /// Number of spans.
+    pub spans: u32,
+    /// Sphere around it, yarn included [m].
+    pub center: Vec3,
+    pub reach: f32,
+    /// Yarn radius [m].
+    pub radius: f32,
+    /// Mean length of a span [m].
+    pub span: f32,
+}
+
+/// Spans to draw at one level, at most [`RUN`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Batch {
+    pub level: Level,
+    pub first: u32,
+    pub end: u32,
+}
+
+/// Chooses levels: `scale` says how many pixels a metre covers at the nearest point of a sphere, or `None` if the sphere
+/// is not in the picture. Batches come coarse to fine, runs of neighbouring chunks of one level as one.
+pub(crate) fn batches(chunks: &[Chunk], scale: impl Fn(Vec3, f32) -> Option<f32>) -> Vec<Batch> {
+    let mut out: Vec<Batch> = Vec::new();
+    for chunk in chunks {
+        let Some(pixels) = scale(chunk.center, chunk.reach) else { continue };
+        let level = Level::of(chunk.radius * pixels, chunk.span * pixels);
+        let end = chunk.first + chunk.spans;
+        match out.last_mut() {
+            Some(last) if last.level == level && last.end == chunk.first && end - last.first <= RUN => {
+                last.end = end
+            }
+            _ => out.push(Batch { level, first: chunk.first, end }),
+        }
+    }
+    out.sort_by_key(|batch| batch.level);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_indexed_in_their_order() {
+        assert!(Level::all().enumerate().all(|(i, level)| level.index() == i));
+    }
+
+    #[test]
+    fn yarn_gets_finer_as_it_comes_nearer() {
+        let counts: Vec<_> = (0..12)
+            .map(|i| 0.3 * f32::powi(2.0, i))
+            .map(|radius| Level::of(radius, 2.0 * radius).triangles(0).len() / 3)
+            .collect();
+        assert!(counts.is_sorted() && counts[0] == 2 && counts[8] >= 24, "{counts:?}");
+    }
+
+    #[test]
+    fn triangles_of_a_tube_close_around_it() {
+        for level in Level::all() {
+            let triangles = level.triangles(0);
+            assert_eq!(triangles.len() as u32, (1 << level.samples) * TUBES[level.tube] * 6);
+            // Every edge across or along appears in two triangles, but for the rings at the ends and the seam.
+            assert!(triangles.contains(&0) && triangles.contains(&(SPAN_VERTICES + SIDES)));
+            let next = level.triangles(1);
+            assert!(next.iter().zip(&triangles).all(|(b, a)| b - a == SPAN_VERTICES), "spans share a ring");
+        }
+    }
+
+    #[test]
+    fn neighbours_of_one_level_are_one_batch_and_hidden_chunks_none() {
+        let chunk = |first| Chunk {
+            first,
+            spans: 10,
+            center: Vec3::X * first as f32,
+            reach: 1.0,
+            radius: 1.0,
+            span: 2.0,
+        };
+        let chunks = [1, 11, 21, 31, 45].map(chunk);
+        let drawn = batches(&chunks, |center, _| (center.x != 21.0).then_some(2.0));
+        let ranges: Vec<_> = drawn.iter().map(|batch| (batch.first, batch.end)).collect();
+        assert_eq!(ranges, [(1, 21), (31, 41), (45, 55)]);
+    }
+}

@@ -1,0 +1,278 @@
+//! Whole pictures: known scenes checked by their pixels, and pictures to look at in the target directory.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "helpers of tests are tests, which clippy cannot see"
+)]
+
+mod support;
+
+use glam::Vec3;
+use image::RgbaImage;
+use render::{
+    Camera, Drawing, Faces, Lines, NamedView, Polygon, Quality, RenderError, Renderer, Scene, Segment, Solid,
+    Solids, Viewport, palette, read_back, render_image,
+};
+use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
+use support::{gpu, stockinette};
+
+const SIZE: [u32; 2] = [160, 120];
+const RED: [f32; 3] = [0.8, 0.05, 0.05];
+const GREEN: [f32; 3] = [0.05, 0.7, 0.05];
+
+/// A square in a plane z, of half width 0.1, seen counter-clockwise from +z.
+fn square(center: Vec3, color: [f32; 3]) -> Faces {
+    let corners = [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)];
+    Faces {
+        positions: corners.map(|(x, y)| center + Vec3::new(x, y, 0.0)).to_vec(),
+        polygons: vec![Polygon { vertices: vec![0, 1, 2, 3], color }],
+    }
+}
+
+fn join(mut a: Faces, b: Faces) -> Faces {
+    let offset = a.positions.len() as u32;
+    a.positions.extend(b.positions);
+    a.polygons.extend(b.polygons.into_iter().map(|mut polygon| {
+        polygon.vertices.iter_mut().for_each(|v| *v += offset);
+        polygon
+    }));
+    a
+}
+
+fn draw(drawing: &Drawing, view: NamedView) -> RgbaImage {
+    let (yaw, pitch) = match view {
+        NamedView::Back => (std::f32::consts::PI, 0.0),
+        _ => (0.0, 0.0),
+    };
+    render_image(gpu(), SIZE, &Camera { yaw, pitch, ..Default::default() }, drawing).unwrap()
+}
+
+/// The pixel at a part of the width and height, 0…1.
+fn at(picture: &RgbaImage, x: f32, y: f32) -> [i32; 3] {
+    let [r, g, b, a] = picture.get_pixel((x * SIZE[0] as f32) as u32, (y * SIZE[1] as f32) as u32).0;
+    assert_eq!(a, 255);
+    [r, g, b].map(i32::from)
+}
+
+fn is_red(pixel: [i32; 3]) -> bool {
+    pixel[0] > 2 * pixel[1] && pixel[0] > 2 * pixel[2]
+}
+
+fn is_green(pixel: [i32; 3]) -> bool {
+    pixel[1] > 2 * pixel[0] && pixel[1] > 2 * pixel[2]
+}
+
+/// Light grey, as the background is.
+fn is_background([r, g, b]: [i32; 3]) -> bool {
+    b > 180 && r >= g && g >= b && r - b < 20
+}
+
+#[test]
+fn faces_appear_where_they_are() {
+    let faces = join(square(Vec3::new(-0.2, 0.0, 0.0), RED), square(Vec3::new(0.2, 0.1, 0.0), GREEN));
+    let picture = draw(&Drawing { faces, ..Default::default() }, NamedView::Front);
+    assert!(is_red(at(&picture, 0.2, 0.5)));
+    assert!(is_green(at(&picture, 0.8, 0.35)));
+    assert!(is_background(at(&picture, 0.5, 0.5)), "{:?}", at(&picture, 0.5, 0.5));
+    assert!(is_background(at(&picture, 0.8, 0.9)));
+    // From behind, left is right.
+    let back = draw(
+        &Drawing { faces: square(Vec3::new(-0.2, 0.0, 0.0), RED), ..Default::default() },
+        NamedView::Back,
+    );
+    assert!(is_red(at(&back, 0.8, 0.5)) && is_background(at(&back, 0.2, 0.5)));
+}
+
+#[test]
+fn what_is_nearer_hides_what_is_farther() {
+    for (near, far) in [(RED, GREEN), (GREEN, RED)] {
+        let faces = join(square(Vec3::Z * 0.05, near), square(Vec3::Z * -0.05, far));
+        let drawing = Drawing { faces, ..Default::default() };
+        let front = at(&draw(&drawing, NamedView::Front), 0.5, 0.5);
+        let back = at(&draw(&drawing, NamedView::Back), 0.5, 0.5);
+        assert!(if near == RED { is_red(front) && is_green(back) } else { is_green(front) && is_red(back) });
+    }
+}
+
+#[test]
+fn the_back_of_a_face_is_darker() {
+    let drawing = Drawing { faces: square(Vec3::ZERO, [0.5; 3]), ..Default::default() };
+    let [front, back] =
+        [NamedView::Front, NamedView::Back].map(|view| at(&draw(&drawing, view), 0.5, 0.5)[1]);
+    assert!(back + 20 < front && back > 30, "front {front}, back {back}");
+}
+
+#[test]
+fn yarn_is_lit_from_the_upper_left_and_round() {
+    let points = (0..8).map(|i| Vec3::new(0.0, 0.05 * (i as f32 - 3.5), 0.0)).collect();
+    let curve = YarnCurve { points, closed: false, radius: 0.05, color: [0.5; 3] };
+    let drawing = Drawing { yarn: YarnCurves { curves: vec![curve] }, ..Default::default() };
+    let picture = draw(&drawing, NamedView::Front);
+    // Fibres make single pixels differ: means along the yarn.
+    let column = |x: f32| (0..40).map(|i| at(&picture, x, 0.35 + 0.3 * i as f32 / 40.0)[0]).sum::<i32>() / 40;
+    let [left, middle, right] = [0.44, 0.49, 0.56].map(column);
+    assert!(left > right + 15 && middle > right + 10, "{left} {middle} {right}");
+    assert!(is_background(at(&picture, 0.3, 0.5)) && is_background(at(&picture, 0.7, 0.5)));
+}
+
+#[test]
+fn lines_lie_on_the_surface_that_they_belong_to() {
+    let [a, b] = [Vec3::new(-0.1, 0.0, 0.0), Vec3::new(0.1, 0.0, 0.0)];
+    let lines = Lines { segments: vec![Segment { ends: [a, b], color: GREEN, width: 4.0 }] };
+    let drawing = Drawing { faces: square(Vec3::ZERO, RED), lines, ..Default::default() };
+    let picture = draw(&drawing, NamedView::Front);
+    assert!(is_green(at(&picture, 0.5, 0.5)) && is_red(at(&picture, 0.5, 0.6)));
+    let hidden = Drawing { faces: square(Vec3::Z * 0.05, RED), ..drawing };
+    assert!(is_red(at(&draw(&hidden, NamedView::Front), 0.5, 0.5)));
+    // A line of four pixels is about four pixels wide.
+    let width = (0..120).filter(|&y| is_green(at(&picture, 0.5, (y as f32 + 0.5) / 120.0))).count();
+    assert!((3..=5).contains(&width), "{width}");
+}
+
+#[test]
+fn bodies_cast_shadows_on_the_ground() {
+    let sphere = Solid::Sphere { center: Vec3::new(0.0, 0.05, 0.0), radius: 0.06 };
+    let look = Camera { pitch: 0.6, ..Default::default() };
+    let [shaded, lit] = [vec![sphere, Solid::Ground { height: -0.1 }], vec![Solid::Ground { height: -0.1 }]]
+        .map(|solids| Drawing { solids: Solids { solids }, ..Default::default() })
+        .map(|drawing| render_image(gpu(), SIZE, &look, &drawing).unwrap());
+    let darker = shaded.pixels().zip(lit.pixels()).filter(|(a, b)| a.0[0] + 25 < b.0[0]).count();
+    assert!(darker > 200, "{darker} pixels");
+}
+
+#[test]
+fn a_viewport_is_reused_resized_and_drawn_again() {
+    let renderer = Renderer::new(gpu(), Quality::Interactive);
+    let mut viewport = Viewport::new(gpu(), &renderer, [64, 48]).unwrap();
+    let mut scene = Scene::new();
+    assert!(!viewport.resize(gpu(), &renderer, [64, 48]).unwrap());
+    assert!(viewport.resize(gpu(), &renderer, SIZE).unwrap());
+    let show = |scene: &Scene| {
+        let mut encoder = gpu().device.create_command_encoder(&Default::default());
+        renderer.draw(gpu(), &mut encoder, &viewport, &Camera::default(), scene);
+        gpu().queue.submit([encoder.finish()]);
+        at(&read_back(gpu(), &viewport).unwrap(), 0.5, 0.5)
+    };
+    assert!(is_background(show(&scene)));
+    scene.set_faces(gpu(), &square(Vec3::ZERO, RED)).unwrap();
+    assert!(is_red(show(&scene)));
+    scene.set_faces(gpu(), &Faces::default()).unwrap();
+    assert!(is_background(show(&scene)));
+}
+
+#[test]
+fn impossible_sizes_are_refused() {
+    for size in [[0, 10], [10, 0], [1 << 20, 10]] {
+        let result = render_image(gpu(), size, &Camera::default(), &Drawing::default());
+        assert!(matches!(result, Err(RenderError::Size { .. })));
+    }
+}
+
+#[test]
+fn odd_curves_draw_without_complaint() {
+    let curve = |points, closed| YarnCurve { points, closed, radius: 0.01, color: [0.5; 3] };
+    let curves = vec![
+        curve(vec![], false),
+        curve(vec![Vec3::ZERO], true),
+        curve(vec![Vec3::ZERO; 3], true),
+        curve(vec![Vec3::ZERO, Vec3::X * 0.1], false),
+        curve(vec![Vec3::ZERO, Vec3::Y * 0.1, Vec3::X * 0.1], true),
+    ];
+    draw(&Drawing { yarn: YarnCurves { curves }, ..Default::default() }, NamedView::Front);
+}
+
+fn save(name: &str, picture: &RgbaImage) {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    picture.save(&path).unwrap();
+    println!("{}", path.display());
+}
+
+/// A curved patch of stitch faces in the colours of their stitches, with course and wale edges and one face selected.
+fn stitch_chart() -> Drawing {
+    const COLUMNS: u32 = 20;
+    const ROWS: u32 = 16;
+    let position = |i: u32| {
+        let (x, y) = (i % (COLUMNS + 1), i / (COLUMNS + 1));
+        let angle = (x as f32 / COLUMNS as f32 - 0.5) * 2.4;
+        Vec3::new(0.05 * angle.sin(), 0.0046 * y as f32, 0.05 * angle.cos())
+    };
+    let positions: Vec<_> = (0..(COLUMNS + 1) * (ROWS + 1)).map(position).collect();
+    let mut faces = Faces { positions, polygons: Vec::new() };
+    let mut lines = Lines::default();
+    let symbols = ["k", "k", "p", "p", "k", "y", "d12k", "kp", "k", "d123p"];
+    for (row, column) in (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column))) {
+        let start = row * (COLUMNS + 1) + column;
+        let corners = [start, start + 1, start + COLUMNS + 2, start + COLUMNS + 1];
+        let symbol = symbols[((column + row / 4) % 10) as usize];
+        faces
+            .polygons
+            .push(Polygon { vertices: corners.to_vec(), color: palette::stitch(symbol, row as usize) });
+        let edge = |i: usize| [corners[i], corners[(i + 1) % 4]].map(|v| faces.positions[v as usize]);
+        lines.segments.push(Segment { ends: edge(0), color: palette::COURSE_EDGE, width: 1.5 });
+        lines.segments.push(Segment { ends: edge(3), color: palette::WALE_EDGE, width: 2.5 });
+        if (row, column) == (7, 10) {
+            let selected = |i| Segment { ends: edge(i), color: palette::SELECTED, width: 5.0 };
+            lines.segments.extend((0..4).map(selected));
+        }
+    }
+    Drawing { faces, lines, ..Default::default() }
+}
+
+#[test]
+#[ignore = "draws pictures to look at; checks nothing"]
+fn gallery() {
+    let size = [1280, 960];
+    let aspect = 4.0 / 3.0;
+    let fabric = |wales, courses| Drawing { yarn: stockinette(wales, courses), ..Default::default() };
+    let swatch = fabric(24, 26);
+    let camera = Camera::named(NamedView::Front, swatch.bounds().unwrap(), aspect);
+    save("front.png", &render_image(gpu(), size, &camera, &swatch).unwrap());
+    let camera = Camera::named(NamedView::Back, swatch.bounds().unwrap(), aspect);
+    save("back.png", &render_image(gpu(), size, &camera, &swatch).unwrap());
+    let near = Camera { distance: 0.045, yaw: 0.4, pitch: 0.35, ..camera };
+    save("near.png", &render_image(gpu(), size, &near, &swatch).unwrap());
+    let mut draped = fabric(63, 63);
+    draped.solids = Solids {
+        solids: vec![
+            Solid::Ground { height: -0.16 },
+            Solid::Sphere { center: Vec3::new(0.02, -0.06, -0.11), radius: 0.1 },
+        ],
+    };
+    let camera = Camera::named(NamedView::ThreeQuarter, draped.bounds().unwrap(), aspect);
+    save("far.png", &render_image(gpu(), size, &camera, &draped).unwrap());
+    let chart = stitch_chart();
+    let camera = Camera::named(NamedView::ThreeQuarter, chart.bounds().unwrap(), aspect);
+    save("stitches.png", &render_image(gpu(), size, &camera, &chart).unwrap());
+}
+
+#[test]
+#[ignore = "measures; run with --nocapture on a quiet machine"]
+fn frame_times() {
+    let renderer = Renderer::new(gpu(), Quality::Interactive);
+    let mut scene = Scene::new();
+    let yarn = stockinette(64, 63);
+    let bounds = Drawing { yarn: yarn.clone(), ..Default::default() }.bounds().unwrap();
+    let camera = Camera::named(NamedView::Front, bounds, 16.0 / 9.0);
+    for (zoom, size) in
+        [1.0, 2.0, 4.0, 8.0].into_iter().flat_map(|zoom| [(zoom, [1280, 720]), (zoom, [640, 360])])
+    {
+        let viewport = Viewport::new(gpu(), &renderer, size).unwrap();
+        let mut camera = camera;
+        camera.zoom(zoom);
+        let mut frame = || {
+            let start = std::time::Instant::now();
+            scene.set_yarn(gpu(), &yarn).unwrap();
+            let update = start.elapsed();
+            let mut encoder = gpu().device.create_command_encoder(&Default::default());
+            renderer.draw(gpu(), &mut encoder, &viewport, &camera, &scene);
+            gpu().queue.submit([encoder.finish()]);
+            gpu().device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+            (start.elapsed(), update)
+        };
+        // The fastest of several: other programs only ever add.
+        let (whole, update) = (0..12).map(|_| frame()).min().unwrap();
+        println!("{size:?}, zoom {zoom}: {whole:.1?}, of which the update takes {update:.1?}");
+    }
+}

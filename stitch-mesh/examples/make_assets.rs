@@ -1,0 +1,158 @@
+//! Writes the bundled meshes into `assets/meshes`: run from the repository's root with
+//! `cargo run --release -p stitch-mesh --example make_assets`.
+//!
+//! All are polygons with a row structure that can be knitted, in metres, y up, front towards +z.
+
+use glam::DVec3;
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
+
+/// A mesh in the making: vertices are named by any key, so that faces that share a vertex say so by sharing its name.
+#[derive(Default)]
+struct Mesh {
+    vertices: Vec<DVec3>,
+    names: HashMap<[i32; 3], usize>,
+    faces: Vec<Vec<usize>>,
+}
+
+impl Mesh {
+    fn vertex(&mut self, name: [i32; 3], position: DVec3) -> usize {
+        *self.names.entry(name).or_insert_with(|| {
+            self.vertices.push(position);
+            self.vertices.len() - 1
+        })
+    }
+
+    fn write(&self, name: &str, what: &str) -> std::io::Result<()> {
+        let mut text = format!("# Purlwise: {what} Unit: metre. Made by make_assets; CC0.\n");
+        for v in &self.vertices {
+            let _ = writeln!(text, "v {:.5} {:.5} {:.5}", v.x, v.y, v.z);
+        }
+        for face in &self.faces {
+            let corners: Vec<String> = face.iter().map(|v| (v + 1).to_string()).collect();
+            let _ = writeln!(text, "f {}", corners.join(" "));
+        }
+        std::fs::write(format!("assets/meshes/{name}.obj"), text)
+    }
+}
+
+/// Rings of quads about the y axis, from the lowest up; a last ring of radius zero closes the top with triangles.
+fn rings(around: i32, rings: &[(f64, f64)]) -> Mesh {
+    let mut mesh = Mesh::default();
+    for (j, pair) in rings.windows(2).enumerate() {
+        let mut at = |i: i32, k: usize| {
+            let (radius, y) = rings[k];
+            let i = if radius == 0.0 { 0 } else { i % around };
+            let angle = TAU * f64::from(i) / f64::from(around);
+            mesh.vertex([i, k as i32, 0], DVec3::new(radius * angle.sin(), y, radius * angle.cos()))
+        };
+        let mut faces = Vec::new();
+        for i in 0..around {
+            let mut face = vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if pair[1].0 == 0.0 {
+                face.pop();
+            }
+            faces.push(face);
+        }
+        mesh.faces.extend(faces);
+    }
+    mesh
+}
+
+fn swatch() -> Mesh {
+    let mut mesh = Mesh::default();
+    for j in 0..5 {
+        for i in 0..6 {
+            let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+            let face = corners.map(|(i, j)| {
+                mesh.vertex([i, j, 0], DVec3::new(f64::from(i) * 0.024 - 0.072, f64::from(j) * 0.024, 0.0))
+            });
+            mesh.faces.push(face.to_vec());
+        }
+    }
+    mesh
+}
+
+fn cowl() -> Mesh {
+    rings(20, &[(0.115, 0.0), (0.108, 0.05), (0.104, 0.10), (0.106, 0.15), (0.112, 0.20)])
+}
+
+fn poncho() -> Mesh {
+    let profile: Vec<(f64, f64)> = (0..=8)
+        .map(|k| {
+            let t = f64::from(k) / 8.0;
+            (0.36 - 0.27 * t, 0.30 * (1.0 - (1.0 - t).powi(2)).max(0.0) + 0.02 * t)
+        })
+        .collect();
+    rings(24, &profile)
+}
+
+fn hat() -> Mesh {
+    let mut profile: Vec<(f64, f64)> = (0..=3).map(|k| (0.085, 0.03 * f64::from(k))).collect();
+    for k in 1..=6 {
+        let angle = PI / 2.0 * f64::from(k) / 6.0;
+        let radius = if k == 6 { 0.0 } else { 0.085 * angle.cos() };
+        profile.push((radius, 0.09 + 0.085 * angle.sin()));
+    }
+    rings(24, &profile)
+}
+
+/// A child's sleeveless pullover: a tube to the underarms, then a front and a back panel, each split by the neck into two
+/// straps; the straps meet on the shoulders.
+fn pullover() -> Mesh {
+    const PANEL: i32 = 14; // faces across the front, and across the back
+    const BODY: i32 = 9; // rows of faces from hem to underarm
+    const YOKE: i32 = 6; // rows of faces from underarm to shoulder
+    const ARM: i32 = 2; // faces of each panel that end at the underarm, on each side
+    const NECK: i32 = 5; // first face of the neck, on each side
+    let (half_width, depth, underarm, shoulder) = (0.165, 0.105, 0.21, 0.345);
+    let across = |i: i32| f64::from(2 * i - PANEL) / f64::from(PANEL); // −1…1
+    let mut mesh = Mesh::default();
+    for (side, front) in [(0, true), (1, false)] {
+        let mut at = |i: i32, j: i32| {
+            let s = across(i);
+            let t = (f64::from(j - BODY) / f64::from(YOKE)).max(0.0); // 0 at the underarm, 1 on the shoulder
+            let (sin, cos) = (s * PI / 2.0).sin_cos();
+            let body = f64::from(j.min(BODY)) / f64::from(BODY) * underarm;
+            let slope = 0.035 * (s.abs() - 0.2).max(0.0);
+            let y = body + t * (shoulder - underarm - slope);
+            // The armhole curves inwards, the panel leans towards the shoulder line.
+            let narrow = 1.0 - 0.10 * (t * PI).sin().max(0.0);
+            let hem = 1.0 + 0.06 * (1.0 - body / underarm);
+            let x = half_width * hem * sin * if t > 0.0 { narrow } else { 1.0 };
+            let z = depth * hem * cos.max(0.0).powf(0.6) * (1.0 - t * t).max(0.0).sqrt();
+            let seam = (i == 0 || i == PANEL) && j <= BODY || j == BODY + YOKE;
+            let name = if seam { [i, j, 2] } else { [i, j, side] };
+            mesh.vertex(name, DVec3::new(x, y, if front { z } else { -z }))
+        };
+        let mut faces = Vec::new();
+        for j in 0..BODY + YOKE {
+            // The neck is deeper in front.
+            let neck_from = BODY + if front { 3 } else { 5 };
+            for i in 0..PANEL {
+                let at_arm = j >= BODY && !(ARM..PANEL - ARM).contains(&i);
+                let at_neck = j >= neck_from && (NECK..PANEL - NECK).contains(&i);
+                if at_arm || at_neck {
+                    continue;
+                }
+                let mut face = vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                if !front {
+                    face.reverse();
+                }
+                faces.push(face);
+            }
+        }
+        mesh.faces.extend(faces);
+    }
+    mesh
+}
+
+fn main() -> std::io::Result<()> {
+    std::fs::create_dir_all("assets/meshes")?;
+    swatch().write("swatch", "a flat piece.")?;
+    cowl().write("cowl", "a tube.")?;
+    poncho().write("poncho", "a poncho, knitted from hem to neck.")?;
+    hat().write("hat", "a hat with decreases to the crown.")?;
+    pullover().write("pullover", "a child's sleeveless pullover.")
+}
