@@ -22,7 +22,7 @@ struct Sample {
 pub fn least_distance(curves: &YarnCurves) -> f64 {
     let radius = curves.curves.iter().map(|c| c.radius).fold(0.0, f32::max);
     let cell = 4.0 * radius;
-    if !(cell > 0.0) {
+    if cell <= 0.0 {
         return f64::INFINITY;
     }
     let mut lengths = Vec::new();

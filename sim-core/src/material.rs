@@ -70,7 +70,7 @@ impl Material {
             young_modulus: 1e7,
             bending_modulus: 1e-3 * s * s,
             density: 8.8e-4 * s * s,
-            wrap_stiffness: 8e-4 * s * s,
+            wrap_stiffness: 1.2e-3 * s * s,
             wrap_angle: FRAC_PI_2,
             wrap_fade: 0.2e-3 * s,
             friction: 0.3,

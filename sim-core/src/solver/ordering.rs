@@ -73,7 +73,8 @@ impl Dissection {
             sorted.sort_by(|a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
             for part in CUTS {
                 let (left, right) = sorted.split_at((part * sorted.len() as f64) as usize);
-                let cut = self.cut(left, right);
+                let [one, other] = [self.cut(left, right), self.cut(right, left)];
+                let cut = if one.weight <= other.weight { one } else { other };
                 if best.as_ref().is_none_or(|b| cut.weight < b.weight) {
                     best = Some(cut);
                 }

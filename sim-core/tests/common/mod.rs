@@ -1,6 +1,7 @@
 //! Swatches and what to measure on them.
 
 #![allow(dead_code, reason = "each suite uses a part of it")]
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, and clippy can't tell")]
 
 use glam::DVec3;
 use sim_core::{Material, Scene, Simulator};
