@@ -151,13 +151,12 @@ impl Sum<'_> {
                 let Some(column) = places.unknown(b, j) else { continue };
                 self.rhs[(places.start[b] + column) as usize] += add.rhs[size * b + j];
                 for a in (0..K).filter(|a| places.start[*a] >= places.start[b]) {
+                    let first = self.matrix.place(places.start[b], places.block[a][b], 0, column);
+                    // In a diagonal block only the lower triangle is stored.
+                    let least = if places.start[a] == places.start[b] { column } else { 0 };
                     for i in 0..size {
-                        let Some(row) = places.unknown(a, i) else { continue };
-                        if places.start[a] == places.start[b] && row < column {
-                            continue;
-                        }
-                        let value = add.matrix[size * a + i][size * b + j];
-                        self.matrix.add(places.start[b], places.block[a][b], row, column, value);
+                        let Some(row) = places.unknown(a, i).filter(|row| *row >= least) else { continue };
+                        self.matrix.value[first + row as usize] += add.matrix[size * a + i][size * b + j];
                     }
                 }
             }
@@ -219,5 +218,90 @@ fn wrap(term: &WrapTerm, Start { material, state, step: h, .. }: Start) -> Contr
         matrix: wrapped.hessian.map(|row| row.map(|k| damped * k)),
         rhs: wrapped.gradient.map(|g| -h * g),
         pull: [DVec3::ZERO; 4],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use stitch_mesh::{lay::lay, pieces::tube, tessellate::StitchSize};
+
+    /// A tube, so that the seam of closed yarns is in it, crumpled and with its yarn slid.
+    fn crumpled() -> (Model, YarnState) {
+        let net = Arc::new(lay(&tube(5, 3, StitchSize::of_width(3e-3)).unwrap()));
+        let mut state = net.laid_state();
+        let mut hash = (0..).map(|i| crate::noise::unit_hash(i) - 0.5);
+        let mut noise = |size: f64| size * hash.next().unwrap();
+        state.position.iter_mut().for_each(|x| *x += DVec3::new(noise(3e-4), noise(3e-4), noise(3e-4)));
+        state.sliding.iter_mut().for_each(|u| *u += noise(1e-4));
+        (Model::new(net).unwrap(), state)
+    }
+
+    #[test]
+    fn right_hand_side_is_the_force_of_the_whole_net() {
+        let (model, state) = crumpled();
+        let material = Material::for_loop_width(3e-3);
+        let mut system = System::new(&model);
+        let step = 1e-3;
+        let start =
+            Start { material: &material, state: &state, gravity: DVec3::ZERO, omega: DVec3::ZERO, step };
+        system.assemble(&model, start);
+        let largest = system.rhs.iter().fold(0.0, |m: f64, f| m.max(f.abs())) / step;
+        let slope = |change: &dyn Fn(&mut YarnState, f64)| {
+            let at = |h: f64| {
+                let mut moved = state.clone();
+                change(&mut moved, h);
+                model.elastic_energy(&material, &moved)
+            };
+            (at(-2e-8) - 8.0 * at(-1e-8) + 8.0 * at(1e-8) - at(2e-8)) / 12e-8
+        };
+        for node in (0..model.net.nodes.len()).step_by(7) {
+            for axis in 0..3 {
+                let force = system.rhs[model.start[node] as usize + axis] / step;
+                let expected = -slope(&|s, h| s.position[node][axis] += h);
+                assert!((force - expected).abs() < 1e-4 * largest, "node {node}: {force} {expected}");
+            }
+        }
+        for visit in (0..model.net.visits.len()).step_by(11).filter(|v| model.sliding[*v] != FROZEN) {
+            let force = system.rhs[model.sliding[visit] as usize] / step;
+            let expected = -slope(&|s, h| s.sliding[visit] += h);
+            assert!((force - expected).abs() < 1e-4 * largest, "visit {visit}: {force} {expected}");
+        }
+    }
+
+    #[test]
+    fn factors_solve_the_assembled_system() {
+        let (model, state) = crumpled();
+        let material = Material::for_loop_width(3e-3);
+        let mut system = System::new(&model);
+        let start = Start {
+            material: &material,
+            state: &state,
+            gravity: DVec3::NEG_Y,
+            omega: DVec3::ZERO,
+            step: 5e-3,
+        };
+        system.assemble(&model, start);
+        let mut solution = system.rhs.clone();
+        let mut cholesky = crate::solver::cholesky::Cholesky::new(&model, &system.matrix).unwrap();
+        cholesky.solve(&system.matrix, &mut solution).unwrap();
+        let matrix = &system.matrix;
+        let mut product = vec![0.0; solution.len()];
+        for j in 0..solution.len() {
+            for k in matrix.column[j] as usize..matrix.column[j + 1] as usize {
+                let i = matrix.row[k] as usize;
+                product[i] += matrix.value[k] * solution[j];
+                if i != j {
+                    product[j] += matrix.value[k] * solution[i];
+                }
+            }
+        }
+        let largest = system.rhs.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        for (a, b) in product.iter().zip(&system.rhs) {
+            assert!((a - b).abs() < 1e-9 * largest);
+        }
+        system.matrix.add_diagonal(0, -1.0);
+        assert!(cholesky.solve(&system.matrix, &mut solution).is_err(), "not positive definite");
     }
 }

@@ -118,3 +118,66 @@ pub(crate) fn with_arc_length(curve: &YarnCurve) -> Vec<(Vec3, f32)> {
     });
     walk.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clearance::least_distance;
+    use crate::testing::swatch_model;
+
+    #[test]
+    fn normals_turn_with_the_fabric_and_keep_their_side() {
+        let net = swatch_model(5, 5).net;
+        let mut state = net.laid_state();
+        for half_turns in [0.0, 0.5, 1.0, 1.7] {
+            let turn =
+                glam::DQuat::from_axis_angle(DVec3::new(0.6, 0.8, 0.0), half_turns * std::f64::consts::PI);
+            for (x, node) in state.position.iter_mut().zip(&net.nodes) {
+                *x = turn * node.position;
+            }
+            for (normal, node) in
+                normals(&net, &state).iter().zip(&net.nodes).filter(|(_, n)| n.face.is_some())
+            {
+                assert!(normal.dot(turn * node.normal) > 0.99, "{normal} for {}", turn * node.normal);
+            }
+        }
+    }
+
+    #[test]
+    fn normals_keep_their_side_when_rolled_up() {
+        let net = swatch_model(12, 5).net;
+        let mut state = net.laid_state();
+        let radius = 6e-3;
+        let mut expected = Vec::new();
+        for (x, node) in state.position.iter_mut().zip(&net.nodes) {
+            let (sin, cos) = (node.position.x / radius).sin_cos();
+            *x = DVec3::new(radius * sin, node.position.y, radius * cos);
+            expected.push(DVec3::new(sin, 0.0, cos));
+        }
+        let inside = |(_, n): &(_, &stitch_mesh::yarn_net::Node)| n.face.is_some();
+        for ((normal, expected), _) in
+            normals(&net, &state).iter().zip(&expected).zip(&net.nodes).filter(inside)
+        {
+            assert!(normal.dot(*expected) > 0.8, "{normal} for {expected}");
+        }
+    }
+
+    #[test]
+    fn middles_keep_yarns_from_passing_through_each_other() {
+        let net = swatch_model(6, 6).net;
+        let drawn = curves(&net, &net.laid_state(), 0.3e-3);
+        let bare = YarnNet { contacts: Vec::new(), ..(*net).clone() };
+        let through = curves(&bare, &bare.laid_state(), 0.3e-3);
+        assert!(least_distance(&drawn) > 2.0 * least_distance(&through));
+        assert!(least_distance(&through) < 0.1 * 0.6e-3);
+    }
+
+    #[test]
+    fn collapsed_fabric_has_finite_curves() {
+        let net = swatch_model(3, 3).net;
+        let mut state = net.laid_state();
+        state.position.fill(DVec3::ZERO);
+        let drawn = curves(&net, &state, 0.3e-3);
+        assert!(drawn.curves.iter().flat_map(|c| &c.points).all(|p| p.is_finite()));
+    }
+}

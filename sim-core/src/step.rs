@@ -160,7 +160,8 @@ impl Stepper {
     fn add_block(&mut self, node: usize, entry: impl Fn(usize, usize) -> f64) {
         for j in 0..3 {
             for i in j..3 {
-                self.system.matrix.add(self.model.start[node], 0, i as u32, j as u32, entry(i, j));
+                let place = self.system.matrix.place(self.model.start[node], 0, i as u32, j as u32);
+                self.system.matrix.value[place] += entry(i, j);
             }
         }
     }

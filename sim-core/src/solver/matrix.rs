@@ -78,10 +78,11 @@ impl BlockMatrix {
         self.block_offset[blocks.start + at]
     }
 
-    /// Adds to the entry (i, j) of the block at `block` of the node whose unknowns start at `start`.
+    /// Place of the entry (i, j) of the block at `block` in the column of the node whose unknowns start at `start`. The places
+    /// of further rows follow; a diagonal block has those with i ≥ j.
     #[inline]
-    pub fn add(&mut self, start: u32, block: u32, i: u32, j: u32, value: f64) {
-        self.value[(self.column[(start + j) as usize] + block + i - j) as usize] += value;
+    pub fn place(&self, start: u32, block: u32, i: u32, j: u32) -> usize {
+        (self.column[(start + j) as usize] + block + i) as usize - j as usize
     }
 
     /// Adds to a diagonal entry.
