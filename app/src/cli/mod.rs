@@ -189,11 +189,7 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    tracing_subscriber::fmt()
-        .with_writer(std::io::stderr)
-        .with_max_level(tracing::Level::WARN)
-        .without_time()
-        .init();
+    listen_to_warnings();
     let arguments = Arguments::parse();
     match run(arguments) {
         Ok(()) => ExitCode::SUCCESS,
@@ -205,6 +201,17 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Our own warnings go to standard error; of the libraries only errors do: what the display server lacks is not the user's
+/// business.
+fn listen_to_warnings() {
+    use tracing_subscriber::prelude::*;
+    let levels = tracing_subscriber::filter::Targets::new()
+        .with_default(tracing::Level::ERROR)
+        .with_targets(["app", "sim_core"].map(|name| (name, tracing::Level::WARN)));
+    let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).without_time();
+    tracing_subscriber::registry().with(lines).with(levels).init();
 }
 
 fn run(arguments: Arguments) -> Result<()> {

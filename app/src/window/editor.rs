@@ -72,7 +72,7 @@ impl Editor {
             screen,
             view,
             stage,
-            tool: Tool::Fill,
+            tool: Tool::of(stage).first().map_or(Tool::Fill, |(tool, ..)| *tool),
             brush: Stitch::purl(),
             camera: Camera::default(),
             playing: false,

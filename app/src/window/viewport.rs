@@ -104,8 +104,10 @@ fn use_tool(editor: &mut Editor, ui: &egui::Ui, response: &egui::Response, ray: 
             }
         }
         (Stage::Stitches | Stage::Yarn, Tool::Paint(reach)) => {
-            let pressed = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
-            if !pressed {
+            let held = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
+            // A quick click is over before the next frame sees the button.
+            let clicked = response.clicked() && editor.stroke.is_none();
+            if !held && !clicked {
                 editor.stroke = None;
                 return;
             }
