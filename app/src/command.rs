@@ -10,11 +10,12 @@ use serde::{Deserialize, Serialize};
 use sim_core::{Material, Scene};
 use std::sync::Arc;
 use stitch_mesh::autolabel::{autolabel, grow};
+use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
 use stitch_mesh::ids::{EdgeId, FaceId, VertexId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::tessellate::{EdgeCounts, StitchSize, tessellate};
+use stitch_mesh::tessellate::tessellate;
 
 /// One change to a project.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

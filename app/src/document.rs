@@ -121,9 +121,9 @@ mod tests {
     use super::*;
     use crate::command::{read_script, write_script};
     use crate::project::Fabric;
+    use stitch_mesh::edge_counts::StitchSize;
     use stitch_mesh::pieces::rectangle;
     use stitch_mesh::stitch::Stitch;
-    use stitch_mesh::tessellate::StitchSize;
 
     fn document() -> Document {
         let size = StitchSize::of_width(0.004);

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use sim_core::{Facts, Material, Scene, carry_over};
 use std::path::Path;
 use std::sync::Arc;
+use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::HalfEdgeId;
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
 use stitch_mesh::lay::lay;
@@ -20,7 +21,6 @@ use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::obj::{Unit, read_obj};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::tessellate::StitchSize;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Version of the file that this program writes, and the newest that it reads.

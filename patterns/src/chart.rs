@@ -93,8 +93,8 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stitch_mesh::edge_counts::StitchSize;
     use stitch_mesh::pieces::rectangle;
-    use stitch_mesh::tessellate::StitchSize;
 
     #[test]
     fn a_chart_repeats_in_both_directions() {

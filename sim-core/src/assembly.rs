@@ -225,7 +225,7 @@ fn wrap(term: &WrapTerm, Start { material, state, step: h, .. }: Start) -> Contr
 mod tests {
     use super::*;
     use std::sync::Arc;
-    use stitch_mesh::{lay::lay, pieces::tube, tessellate::StitchSize};
+    use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube};
 
     /// A tube, so that the seam of closed yarns is in it, crumpled and with its yarn slid.
     fn crumpled() -> (Model, YarnState) {

@@ -119,10 +119,10 @@ mod tests {
     use super::*;
     use crate::{Material, Scene, Simulator};
     use std::sync::Arc;
+    use stitch_mesh::edge_counts::StitchSize;
     use stitch_mesh::lay::lay;
     use stitch_mesh::pieces::rectangle;
     use stitch_mesh::stitch::Stitch;
-    use stitch_mesh::tessellate::StitchSize;
 
     #[test]
     fn an_edit_keeps_everything_else() {

@@ -5,12 +5,12 @@ mod common;
 use common::WIDTH;
 use sim_core::{Material, Scene, Simulator};
 use std::sync::Arc;
+use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::lay::lay;
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::pieces::{rectangle, tube};
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::tessellate::StitchSize;
 
 /// Hangs the piece by its top nodes for 0.3 s and sees that it holds.
 #[allow(clippy::unwrap_used, reason = "a helper of tests is a test, and clippy can't tell")]

@@ -1,9 +1,9 @@
 //! Plain pieces of fabric, stitch by stitch: the rectangle and the tube that swatches and experiments begin with.
 
+use crate::edge_counts::StitchSize;
 use crate::mesh::PolygonMesh;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{StitchMesh, StitchMeshError};
-use crate::tessellate::StitchSize;
 use glam::DVec3;
 
 /// A flat piece of `wide` × `high` knit stitches in the plane z = 0, front to +z, wales up along +y, centred on the origin.

@@ -9,40 +9,14 @@
 //! Unlike the paper's, a side of a face may have no edges at all (a triangle whose tip is the top): its last row has one
 //! stitch that gathers what is left, or conjures its loops out of yarn-overs where the tip is below.
 
-use crate::ids::{EdgeId, FaceId, VertexId};
+use crate::edge_counts::{EdgeCounts, FaceCounts, MOST_STITCHES};
+use crate::ids::{FaceId, VertexId};
 use crate::label::{LabelProblem, LabelledMesh, Wales};
 use crate::mean_value::mean_value_weights;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{StitchMesh, StitchMeshError};
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
-
-/// Size of a stitch as laid.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StitchSize {
-    /// Width of a loop along the course [m].
-    pub width: f64,
-    /// Height of a row along the wale [m].
-    pub height: f64,
-}
-
-impl StitchSize {
-    /// The usual proportions of stockinette as laid: three quarters as high as wide (W = 3 mm, H = 2.25 mm in the simulator's
-    /// reference fabric).
-    pub fn of_width(width: f64) -> Self {
-        Self { width, height: 0.75 * width }
-    }
-}
-
-/// Stitches or rows along every edge of the input, and the wale edges marked for increases and decreases.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EdgeCounts {
-    /// [edge_count], each at least 1.
-    pub counts: Vec<u32>,
-    /// Marked wale edges.
-    pub marked: Vec<EdgeId>,
-}
 
 /// Why a labelled mesh cannot be tessellated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -91,80 +65,15 @@ pub enum TessellateError {
     StitchMesh(#[from] StitchMeshError),
 }
 
-/// Ten times the finest garment that was ever simulated this way (325 000 loops).
-pub const MOST_STITCHES: u64 = 3_000_000;
-
 fn and_more(count: usize) -> String {
     if count > 1 { format!("; and {} more faces", count - 1) } else { String::new() }
 }
 
-impl EdgeCounts {
-    /// Counts from edge lengths and stitch size: a course edge by its own length, the wale edges of a row by their mean.
-    ///
-    /// # Errors
-    /// [`TessellateError::Labels`] where labels are missing, [`TessellateError::StitchSize`], [`TessellateError::TooMany`].
-    pub fn from_size(labelled: &LabelledMesh, size: StitchSize) -> Result<Self, TessellateError> {
-        check_labels(labelled)?;
-        if !(size.width > 0.0 && size.height > 0.0) {
-            return Err(TessellateError::StitchSize(size.width.min(size.height)));
-        }
-        let mesh = labelled.mesh();
-        let count = |length: f64, unit: f64| (length / unit).round().clamp(1.0, 1e6) as u32;
-        let mut counts: Vec<u32> = mesh.edges().map(|e| count(mesh.edge_length(e), size.width)).collect();
-        for row in labelled.rows() {
-            let wales: Vec<Wales> = row.faces.iter().filter_map(|f| labelled.wales(*f)).collect();
-            let edges: Vec<EdgeId> =
-                wales.iter().flat_map(|w| [mesh.edge(w.left), mesh.edge(w.right)]).collect();
-            let mean = edges.iter().map(|e| mesh.edge_length(*e)).sum::<f64>() / edges.len() as f64;
-            edges.iter().for_each(|e| counts[e.index()] = count(mean, size.height));
-        }
-        let counts = Self { counts, marked: Vec::new() };
-        match counts.stitches(labelled) {
-            many if many > MOST_STITCHES => Err(TessellateError::TooMany(many)),
-            _ => Ok(counts),
-        }
-    }
-
-    /// About how many stitches the counts make: rows times the mean of top and bottom, face by face.
-    fn stitches(&self, labelled: &LabelledMesh) -> u64 {
-        let faces = labelled.mesh().faces().filter_map(|f| FaceCounts::of(labelled, self, f));
-        faces.map(|c| u64::from(c.rows) * u64::from(c.bottom + c.top).div_ceil(2)).sum()
-    }
-}
-
-fn check_labels(labelled: &LabelledMesh) -> Result<(), TessellateError> {
+pub(crate) fn check_labels(labelled: &LabelledMesh) -> Result<(), TessellateError> {
     let problems = labelled.problems();
     match problems.first() {
         Some(first) => Err(TessellateError::Labels { first: first.clone(), count: problems.len() }),
         None => Ok(()),
-    }
-}
-
-/// Counts at one face.
-struct FaceCounts {
-    wales: Wales,
-    bottom: u32,
-    top: u32,
-    rows: u32,
-}
-
-impl FaceCounts {
-    fn of(labelled: &LabelledMesh, counts: &EdgeCounts, face: FaceId) -> Option<Self> {
-        let wales = labelled.wales(face)?;
-        let count = |h| counts.counts[labelled.mesh().edge(h).index()];
-        let bottom = labelled.bottoms(wales).into_iter().map(count).sum();
-        let top = labelled.tops(wales).into_iter().map(count).sum();
-        Some(Self { wales, bottom, top, rows: count(wales.right) })
-    }
-
-    /// Stitches on row boundary `i`, from 0 at the bottom.
-    fn at(&self, i: u32) -> u32 {
-        let (b, t, w) = (f64::from(self.bottom), f64::from(self.top), f64::from(self.rows));
-        match i {
-            0 => self.bottom,
-            i if i == self.rows => self.top,
-            i => (b + (t - b) * f64::from(i) / w).round().max(1.0) as u32,
-        }
     }
 }
 
@@ -374,7 +283,9 @@ fn shares(edges: usize, stitches: usize, side: Side) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::edge_counts::StitchSize;
     use crate::grid::grid;
+    use crate::ids::EdgeId;
     use proptest::prelude::*;
 
     fn counted(labelled: &LabelledMesh, bottom: u32, top: u32, rows: u32) -> EdgeCounts {
@@ -418,15 +329,6 @@ mod tests {
             assert_eq!(stitches.stitch(last).to_string(), "kp");
             assert!(row.faces[..row.faces.len() - 1].iter().all(|f| stitches.stitch(*f).to_string() == "k"));
         }
-    }
-
-    #[test]
-    fn counts_follow_the_stitch_size() {
-        let labelled = grid(2, 3); // faces of 10 mm × 10 mm
-        let counts = EdgeCounts::from_size(&labelled, StitchSize::of_width(1e-3)).unwrap();
-        let stitches = tessellate(&labelled, &counts).unwrap();
-        assert_eq!(stitches.rows().len(), 3 * 13);
-        assert!(stitches.rows().iter().all(|r| r.faces.len() == 20));
     }
 
     #[test]

@@ -10,8 +10,8 @@ use crate::scenes;
 use anyhow::Result;
 use render::{Gpu, NamedView};
 use std::path::Path;
+use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::obj::{Unit, read_obj};
-use stitch_mesh::tessellate::StitchSize;
 
 /// The bundled pullover, in metres.
 pub const PULLOVER: &[u8] = include_bytes!("../../../assets/meshes/pullover.obj");

@@ -17,10 +17,11 @@ use clap::{Parser, Subcommand, ValueEnum};
 use render::{Camera, Gpu, NamedView, render_image};
 use serde_json::json;
 use sim_core::curves;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::obj::Unit;
-use stitch_mesh::tessellate::StitchSize;
 
 /// An editor for knitted fabric, with the yarn simulated live.
 #[derive(Parser)]
@@ -141,9 +142,10 @@ struct Output {
 
 impl Output {
     /// Prints the result of a verb.
-    #[allow(clippy::print_stdout, reason = "this is where a verb's result goes to standard output")]
     fn print(self, json: &serde_json::Value, text: &dyn std::fmt::Display) {
-        if self.json { println!("{json}") } else { println!("{text}") }
+        let mut out = std::io::stdout();
+        // A reader that has gone away (`| head`) does not want the rest; the work is done all the same.
+        let _ = if self.json { writeln!(out, "{json}") } else { writeln!(out, "{text}") };
     }
 }
 

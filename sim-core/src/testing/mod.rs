@@ -4,7 +4,7 @@ pub(crate) mod finite_difference;
 
 use crate::model::Model;
 use std::sync::Arc;
-use stitch_mesh::{lay::lay, pieces::rectangle, tessellate::StitchSize};
+use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::rectangle};
 
 /// The model of a piece of stockinette with loops of 3 mm.
 pub(crate) fn swatch_model(wide: usize, high: usize) -> Model {

@@ -6,11 +6,11 @@
 use glam::DVec3;
 use sim_core::{Material, Scene, Simulator};
 use std::sync::Arc;
+use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::lay::lay;
 use stitch_mesh::pieces::rectangle;
 use stitch_mesh::stitch::Stitch;
-use stitch_mesh::tessellate::StitchSize;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Loop width of the swatches [m].

@@ -1,12 +1,13 @@
 //! What must hold for the yarn of any fabric.
 
 use super::lay;
+use crate::edge_counts::{EdgeCounts, StitchSize};
 use crate::grid::grid;
 use crate::ids::{FaceId, NodeId, VisitId};
 use crate::pieces::tube;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
-use crate::tessellate::{EdgeCounts, StitchSize, tessellate};
+use crate::tessellate::tessellate;
 use crate::yarn_net::YarnNet;
 use proptest::prelude::*;
 
