@@ -4,10 +4,11 @@
 //! |---|---|
 //! | `project` | what a project is, and its file |
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
-//! | `inspect`, `scenes`, `drawing`, `export` | facts, named scenes, pictures and curves of a project |
+//! | `inspect`, `scenes`, `drawing`, `export`, `bundled` | facts, named scenes, pictures and curves of a project, and the one that comes with the program |
 //! | `cli` | the command line |
 //! | `window` | the same document with a mouse |
 
+pub mod bundled;
 pub mod cli;
 pub mod command;
 pub mod document;

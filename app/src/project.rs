@@ -114,6 +114,18 @@ impl Project {
         Self::from_json(&files::read(path)?).with_context(|| path.display().to_string())
     }
 
+    /// Opens a project, or a mesh in metres as a new project.
+    ///
+    /// # Errors
+    /// As [`Self::open`] and [`Self::from_obj`]; a file of another kind.
+    pub fn open_any(path: &Path) -> Result<Self> {
+        match path.extension().and_then(|e| e.to_str()) {
+            Some("purl") => Self::open(path),
+            Some("obj") => Self::from_obj(path, Unit::M, StitchSize::of_width(DEFAULT_STITCH_WIDTH)),
+            _ => bail!("cannot open {}: the name has to end in .purl or .obj", path.display()),
+        }
+    }
+
     /// Writes a `.purl` file, whole or not at all.
     ///
     /// # Errors

@@ -16,8 +16,6 @@
 //! A software adapter takes about as long as there are pixels. Where [`Gpu::is_software`], a window stays fluent by drawing
 //! into a viewport of half the width and height while something moves, and of full size when it has come to rest.
 
-#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets, as in [m]")]
-
 mod camera;
 mod compose;
 mod drawing;

@@ -6,8 +6,7 @@
 //! length after another.
 
 use crate::ids::{EdgeId, FaceId};
-use crate::label::{LabelledMesh, Wales};
-use crate::tessellate::{TessellateError, check_labels};
+use crate::label::{Incomplete, LabelledMesh, Wales};
 use serde::{Deserialize, Serialize};
 
 /// Size of a stitch as laid.
@@ -39,15 +38,31 @@ pub struct EdgeCounts {
 /// Ten times the finest garment that was ever simulated this way (325 000 loops).
 pub const MOST_STITCHES: u64 = 3_000_000;
 
+/// Why there are no counts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CountError {
+    /// Faces without a clear row.
+    #[error(transparent)]
+    Labels(#[from] Incomplete),
+    /// The stitch size is no length.
+    #[error("the stitch size must be above zero, not {0} m")]
+    StitchSize(f64),
+    /// More stitches than a garment has.
+    #[error(
+        "this would make {0} stitches; the limit is {MOST_STITCHES}: take larger stitches, or check the unit of the mesh"
+    )]
+    TooMany(u64),
+}
+
 impl EdgeCounts {
     /// Counts from edge lengths and stitch size: a course edge by its own length, the wale edges of a row by their mean.
     ///
     /// # Errors
-    /// [`TessellateError::Labels`] where labels are missing, [`TessellateError::StitchSize`], [`TessellateError::TooMany`].
-    pub fn from_size(labelled: &LabelledMesh, size: StitchSize) -> Result<Self, TessellateError> {
-        check_labels(labelled)?;
+    /// [`CountError::Labels`] where labels are missing, [`CountError::StitchSize`], [`CountError::TooMany`].
+    pub fn from_size(labelled: &LabelledMesh, size: StitchSize) -> Result<Self, CountError> {
+        labelled.check_complete()?;
         if !(size.width > 0.0 && size.height > 0.0) {
-            return Err(TessellateError::StitchSize(size.width.min(size.height)));
+            return Err(CountError::StitchSize(size.width.min(size.height)));
         }
         let mesh = labelled.mesh();
         let count = |length: f64, unit: f64| (length / unit).round().clamp(1.0, 1e6) as u32;
@@ -61,7 +76,7 @@ impl EdgeCounts {
         }
         let counts = Self { counts, marked: Vec::new() };
         match counts.stitches(labelled) {
-            many if many > MOST_STITCHES => Err(TessellateError::TooMany(many)),
+            many if many > MOST_STITCHES => Err(CountError::TooMany(many)),
             _ => Ok(counts),
         }
     }
@@ -152,6 +167,15 @@ mod tests {
         let stitches = tessellate(&labelled, &counts).unwrap();
         assert_eq!(stitches.rows().len(), 3 * 13);
         assert!(stitches.rows().iter().all(|r| r.faces.len() == 20));
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused() {
+        let labelled = grid(1, 1);
+        let counts = |width| EdgeCounts::from_size(&labelled, StitchSize::of_width(width));
+        assert!(matches!(counts(1e-9), Err(CountError::TooMany(_))));
+        assert!(matches!(counts(f64::NAN), Err(CountError::StitchSize(_))));
+        assert!(matches!(counts(-1.0), Err(CountError::StitchSize(_))));
     }
 
     #[test]

@@ -76,6 +76,16 @@ impl LabelProblem {
     }
 }
 
+/// Labels that are not complete.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{first}{}", if *.count > 1 { format!("; and {} more faces", .count - 1) } else { String::new() })]
+pub struct Incomplete {
+    /// The first problem.
+    pub first: LabelProblem,
+    /// How many there are.
+    pub count: usize,
+}
+
 /// Why a labelling tool did nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
@@ -259,6 +269,18 @@ impl LabelledMesh {
             }
         }
         rows
+    }
+
+    /// Whether every face has its row.
+    ///
+    /// # Errors
+    /// [`Incomplete`] with the first problem.
+    pub fn check_complete(&self) -> Result<(), Incomplete> {
+        let problems = self.problems();
+        match problems.first() {
+            Some(first) => Err(Incomplete { first: first.clone(), count: problems.len() }),
+            None => Ok(()),
+        }
     }
 
     /// Everything that keeps this mesh from being knitted. Empty when it can be tessellated.

@@ -5,7 +5,7 @@
 //! builds a new mesh, so the invariants checked by [`crate::validate`] hold for as long as the mesh lives.
 
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
-use crate::validate::{MeshProblem, validate};
+use crate::validate::{MeshProblem, area_vector, validate};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -316,12 +316,6 @@ impl PolygonMesh {
             .iter()
             .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lo, hi], p| [lo.min(*p), hi.max(*p)])
     }
-}
-
-/// Area vector of a polygon (Newell's formula, about its first point so that far-off meshes keep their digits) [m²].
-pub fn area_vector(points: &[DVec3]) -> DVec3 {
-    let Some(&origin) = points.first() else { return DVec3::ZERO };
-    points.windows(2).map(|w| (w[0] - origin).cross(w[1] - origin)).sum::<DVec3>() * 0.5
 }
 
 #[cfg(test)]

@@ -9,9 +9,9 @@
 //! Unlike the paper's, a side of a face may have no edges at all (a triangle whose tip is the top): its last row has one
 //! stitch that gathers what is left, or conjures its loops out of yarn-overs where the tip is below.
 
-use crate::edge_counts::{EdgeCounts, FaceCounts, MOST_STITCHES};
+use crate::edge_counts::{EdgeCounts, FaceCounts};
 use crate::ids::{FaceId, VertexId};
-use crate::label::{LabelProblem, LabelledMesh, Wales};
+use crate::label::{Incomplete, LabelledMesh, Wales};
 use crate::mean_value::mean_value_weights;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
@@ -22,13 +22,8 @@ use glam::{DVec2, DVec3};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TessellateError {
     /// Faces without a clear row.
-    #[error("{first}{}", and_more(*.count))]
-    Labels {
-        /// The first problem.
-        first: LabelProblem,
-        /// How many there are.
-        count: usize,
-    },
+    #[error(transparent)]
+    Labels(#[from] Incomplete),
     /// Counts that do not fit the mesh.
     #[error("{given} edge counts for {edges} edges")]
     CountLength {
@@ -49,14 +44,6 @@ pub enum TessellateError {
         /// Rows on the right.
         right: u32,
     },
-    /// The stitch size is no length.
-    #[error("the stitch size must be above zero, not {0} m")]
-    StitchSize(f64),
-    /// More stitches than a garment has.
-    #[error(
-        "this would make {0} stitches; the limit is {MOST_STITCHES}: take larger stitches, or check the unit of the mesh"
-    )]
-    TooMany(u64),
     /// The tessellated faces do not make a mesh.
     #[error("the stitches do not make a mesh: {0}")]
     Mesh(#[from] MeshError),
@@ -65,24 +52,12 @@ pub enum TessellateError {
     StitchMesh(#[from] StitchMeshError),
 }
 
-fn and_more(count: usize) -> String {
-    if count > 1 { format!("; and {} more faces", count - 1) } else { String::new() }
-}
-
-pub(crate) fn check_labels(labelled: &LabelledMesh) -> Result<(), TessellateError> {
-    let problems = labelled.problems();
-    match problems.first() {
-        Some(first) => Err(TessellateError::Labels { first: first.clone(), count: problems.len() }),
-        None => Ok(()),
-    }
-}
-
 /// Cuts every face into stitches. Faces come out row by row within each input face, in the order of the input faces.
 ///
 /// # Errors
 /// [`TessellateError`].
 pub fn tessellate(labelled: &LabelledMesh, counts: &EdgeCounts) -> Result<StitchMesh, TessellateError> {
-    check_labels(labelled)?;
+    labelled.check_complete()?;
     let mesh = labelled.mesh();
     if counts.counts.len() != mesh.edge_count() {
         return Err(TessellateError::CountLength { given: counts.counts.len(), edges: mesh.edge_count() });
@@ -283,7 +258,6 @@ fn shares(edges: usize, stitches: usize, side: Side) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge_counts::StitchSize;
     use crate::grid::grid;
     use crate::ids::EdgeId;
     use proptest::prelude::*;
@@ -349,11 +323,6 @@ mod tests {
         let counts = counted(&labelled, 2, 2, 2);
         let short = EdgeCounts { counts: vec![1], marked: vec![] };
         assert!(matches!(tessellate(&labelled, &short), Err(TessellateError::CountLength { .. })));
-        assert!(matches!(
-            EdgeCounts::from_size(&labelled, StitchSize::of_width(1e-9)),
-            Err(TessellateError::TooMany(_))
-        ));
-        assert!(EdgeCounts::from_size(&labelled, StitchSize::of_width(f64::NAN)).is_err());
         labelled.set_label(EdgeId(0), None);
         assert!(matches!(tessellate(&labelled, &counts), Err(TessellateError::Labels { .. })));
     }

@@ -1,7 +1,6 @@
 //! What can be wrong with a polygon mesh, found before any structure is built on it.
 
 use crate::ids::{FaceId, VertexId};
-use crate::mesh::area_vector;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -106,6 +105,12 @@ fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
     let perimeter: f64 = (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum();
     // A face thinner than a millionth of its outline cannot hold a stitch.
     (area_vector(&points).length() <= 1e-6 * perimeter * perimeter).then_some("it has no area")
+}
+
+/// Area vector of a polygon (Newell's formula, about its first point so that far-off meshes keep their digits) [m²].
+pub fn area_vector(points: &[DVec3]) -> DVec3 {
+    let Some(&origin) = points.first() else { return DVec3::ZERO };
+    points.windows(2).map(|w| (w[0] - origin).cross(w[1] - origin)).sum::<DVec3>() * 0.5
 }
 
 fn edge_problems(faces: &[Vec<u32>]) -> Vec<MeshProblem> {

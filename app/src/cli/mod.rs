@@ -4,8 +4,6 @@ mod demo;
 mod interrupt;
 mod simulate;
 
-pub use demo::project as demo_project;
-
 use crate::command::{Command, read_script};
 use crate::document::Document;
 use crate::drawing::{Stage, drawing};
@@ -218,7 +216,7 @@ fn listen_to_warnings() {
 
 fn run(arguments: Arguments) -> Result<()> {
     let Some(verb) = arguments.verb else {
-        let project = arguments.file.as_deref().map(open_any).transpose()?;
+        let project = arguments.file.as_deref().map(Project::open_any).transpose()?;
         return crate::window::run(project, arguments.file);
     };
     match verb {
@@ -268,15 +266,6 @@ fn run(arguments: Arguments) -> Result<()> {
             Ok(())
         }
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
-    }
-}
-
-/// Opens a project, or a mesh in metres as a new project.
-pub(crate) fn open_any(path: &Path) -> Result<Project> {
-    match path.extension().and_then(|e| e.to_str()) {
-        Some("purl") => Project::open(path),
-        Some("obj") => Project::from_obj(path, Unit::M, StitchSize::of_width(DEFAULT_STITCH_WIDTH)),
-        _ => bail!("cannot open {}: the name has to end in .purl or .obj", path.display()),
     }
 }
 

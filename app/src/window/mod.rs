@@ -7,7 +7,7 @@ pub mod session;
 pub mod tools;
 mod viewport;
 
-use crate::cli::demo_project;
+use crate::bundled;
 use crate::project::Project;
 use anyhow::{Context, Result};
 use editor::Editor;
@@ -30,7 +30,7 @@ struct Wake;
 /// # Errors
 /// There is no display, or no graphics adapter.
 pub fn run(project: Option<Project>, path: Option<PathBuf>) -> Result<()> {
-    let project = project.map_or_else(demo_project, Ok)?;
+    let project = project.map_or_else(bundled::pullover, Ok)?;
     let events = EventLoop::<Wake>::with_user_event()
         .build()
         .context("cannot open a window (on a machine without a display use `purlwise demo`)")?;

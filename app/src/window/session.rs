@@ -4,8 +4,8 @@
 
 use crate::command::{Command, write_script};
 use crate::document::Document;
+use crate::files;
 use crate::project::Project;
-use crate::{cli, files};
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -155,7 +155,7 @@ impl Worker {
                 Ok(format!("Redone: {name}"))
             }
             Request::Open(path) => {
-                self.document = Document::new(cli::open_any(&path)?);
+                self.document = Document::new(Project::open_any(&path)?);
                 let message = format!("Opened {}", path.display());
                 self.path = Some(path);
                 Ok(message)

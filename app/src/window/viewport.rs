@@ -92,15 +92,13 @@ fn use_tool(editor: &mut Editor, ui: &egui::Ui, response: &egui::Response, ray: 
     let Some(hit) = hit else { return };
     let face = FaceId::new(hit.polygon);
     match (editor.stage, editor.tool) {
-        (Stage::Labels, tool) => {
-            if response.clicked() {
-                let labelled = editor.project().labelled.clone();
-                let corners = &editor.faces.polygons[hit.polygon].vertices;
-                let edge = [corners[hit.edge], corners[(hit.edge + 1) % corners.len()]];
-                let onwards = ui.input(|i| i.modifiers.shift);
-                if let Some(command) = tool.label(&labelled, face, edge, onwards) {
-                    editor.act(command);
-                }
+        (Stage::Labels, tool) if response.clicked() => {
+            let labelled = editor.project().labelled.clone();
+            let corners = &editor.faces.polygons[hit.polygon].vertices;
+            let edge = [corners[hit.edge], corners[(hit.edge + 1) % corners.len()]];
+            let onwards = ui.input(|i| i.modifiers.shift);
+            if let Some(command) = tool.label(&labelled, face, edge, onwards) {
+                editor.act(command);
             }
         }
         (Stage::Stitches | Stage::Yarn, Tool::Paint(reach)) => {
