@@ -117,19 +117,20 @@ impl Command {
         let mut after = project.clone();
         match self {
             Self::FillFromBorder { edge } => relabel(&mut after, |l| {
-                l.fill_from_border(find_edge(l, *edge)?)?;
+                l.fill_from_border(find_edge(l, *edge)?).with_context(|| at(*edge))?;
                 Ok(())
             })?,
             Self::FillFromCourse { edge } => relabel(&mut after, |l| {
-                l.fill_from_course(find_edge(l, *edge)?)?;
+                l.fill_from_course(find_edge(l, *edge)?).with_context(|| at(*edge))?;
                 Ok(())
             })?,
             Self::FillOnwards { edge } => relabel(&mut after, |l| {
-                let edge = find_edge(l, *edge)?;
-                match l.label(edge) {
-                    Some(EdgeLabel::Course) => l.fill_from_course(edge)?,
-                    _ => l.fill_from_border(edge)?,
+                let id = find_edge(l, *edge)?;
+                let row = match l.label(id) {
+                    Some(EdgeLabel::Course) => l.fill_from_course(id),
+                    _ => l.fill_from_border(id),
                 };
+                row.with_context(|| at(*edge))?;
                 grow(l);
                 Ok(())
             })?,
@@ -212,6 +213,10 @@ fn restitch(project: &mut Project, change: impl FnOnce(&mut StitchMesh) -> Resul
     project.fabric = Some(Fabric::new(stitches));
     project.keep_yarn_of(&before);
     Ok(())
+}
+
+fn at([a, b]: [u32; 2]) -> String {
+    format!("edge {a}–{b}")
 }
 
 fn find_edge(labelled: &LabelledMesh, [a, b]: [u32; 2]) -> Result<EdgeId> {

@@ -67,7 +67,7 @@ pub fn inspect(project: &Project) -> Inspection {
     let problems = labelled
         .problems()
         .into_iter()
-        .map(|p| Problem { r#where: format!("face {}", p.face()), what: p.to_string() });
+        .map(|p| Problem { r#where: format!("face {}", p.face()), what: p.what() });
     let mesh = project.fabric.as_ref().map_or(labelled.mesh(), |f| f.stitches.mesh());
     let [low, high] = mesh.bounds();
     let facts = Inspection {
@@ -126,6 +126,27 @@ fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
     facts
 }
 
+impl Inspection {
+    /// The problems as lines, one for all places with the same problem.
+    pub fn grouped_problems(&self) -> Vec<String> {
+        /// Places named before the rest is counted.
+        const NAMED: usize = 8;
+        let mut places: Vec<(&str, Vec<&str>)> = Vec::new();
+        for Problem { r#where, what } in &self.problems {
+            match places.iter_mut().find(|(w, _)| w == what) {
+                Some((_, group)) => group.push(r#where),
+                None => places.push((what, vec![r#where])),
+            }
+        }
+        let line = |(what, group): (&str, Vec<&str>)| {
+            let named = group[..group.len().min(NAMED)].join(", ");
+            let more = group.len() - group.len().min(NAMED);
+            if more > 0 { format!("{named} and {more} more: {what}") } else { format!("{named}: {what}") }
+        };
+        places.into_iter().map(line).collect()
+    }
+}
+
 impl std::fmt::Display for Inspection {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "{} faces in {} rows, {} boundary edges", self.faces, self.rows, self.boundary_edges)?;
@@ -140,8 +161,8 @@ impl std::fmt::Display for Inspection {
         }
         let [x, y, z] = self.size_mm;
         write!(f, "{x:.0} × {y:.0} × {z:.0} mm")?;
-        for problem in &self.problems {
-            write!(f, "\n{}", problem.what)?;
+        for problem in self.grouped_problems() {
+            write!(f, "\n{problem}")?;
         }
         if let Some(sim) = &self.sim {
             write!(

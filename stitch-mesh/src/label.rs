@@ -36,19 +36,15 @@ pub struct Row {
     pub closed: bool,
 }
 
-/// An edge or face whose label is missing or wrong.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// A face whose labels are missing or wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LabelProblem {
     /// A face with an edge that is neither course nor wale yet.
-    #[error("face {face} is not labelled yet: fill its row from a border or from a labelled row beside it")]
     Unlabelled {
         /// The face.
         face: FaceId,
     },
     /// A face needs exactly two wale edges, for its row's yarn to come in and go out.
-    #[error(
-        "face {face} has {count} wale edges, it needs two: label its edges by hand, or change the mesh there"
-    )]
     WaleCount {
         /// The face.
         face: FaceId,
@@ -56,7 +52,6 @@ pub enum LabelProblem {
         count: usize,
     },
     /// Two neighbours in a row have opposite wale directions.
-    #[error("faces {a} and {b} are in one row but knitted in opposite directions")]
     OpposedInRow {
         /// One face.
         a: FaceId,
@@ -74,6 +69,28 @@ impl LabelProblem {
             }
         }
     }
+
+    /// What is wrong there and what to do about it.
+    pub fn what(&self) -> String {
+        match self {
+            Self::Unlabelled { .. } => {
+                "not labelled yet: fill the row from a border or from a labelled row beside it".into()
+            }
+            Self::WaleCount { count, .. } => format!(
+                "wale edges at this face: {count}, and it needs two, for the yarn of its row to come in and go out; label \
+                 its edges by hand, or change the mesh there"
+            ),
+            Self::OpposedInRow { b, .. } => {
+                format!("knitted in the opposite direction to face {b} in the same row: flip one of them")
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for LabelProblem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "face {}: {}", self.face(), self.what())
+    }
 }
 
 /// Labels that are not complete.
@@ -90,13 +107,13 @@ pub struct Incomplete {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
     /// Filling from a border needs a border edge.
-    #[error("edge {0} is not on a border")]
+    #[error("not on a border; fill from a border, or from a course edge of a labelled row")]
     NotBorder(EdgeId),
     /// Filling from a course edge needs a course edge.
-    #[error("edge {0} is not a course edge")]
+    #[error("not a course edge")]
     NotCourse(EdgeId),
     /// There is no unlabelled face on that edge.
-    #[error("there is no unlabelled face at edge {0}")]
+    #[error("there is no unlabelled face beside it")]
     NothingToFill(EdgeId),
     /// The face has no wale direction to flip yet.
     #[error("face {0} has no row yet")]

@@ -26,6 +26,9 @@ const CHARTS: [(&str, &[&str]); 6] = [
 const STITCHES: [(&str, &str); 4] =
     [("k", "knit"), ("p", "purl"), ("k1", "knit, twisted"), ("p1", "purl, twisted")];
 
+/// Kinds of problems shown; the rest waits until these are mended.
+const MOST_PROBLEMS: usize = 12;
+
 /// What the panels remember between frames.
 pub struct State {
     /// The path field.
@@ -307,11 +310,8 @@ pub fn right(editor: &mut Editor, ui: &mut Ui) {
             if facts.problems.is_empty() {
                 ui.label("none");
             }
-            for problem in facts.problems.iter().take(20) {
-                ui.colored_label(ui.visuals().warn_fg_color, &problem.what);
-            }
-            if facts.problems.len() > 20 {
-                ui.label(format!("… and {} more", facts.problems.len() - 20));
+            for problem in facts.grouped_problems().iter().take(MOST_PROBLEMS) {
+                ui.colored_label(ui.visuals().warn_fg_color, problem);
             }
             ui.separator();
             ui.heading("History");

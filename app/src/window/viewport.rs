@@ -96,7 +96,7 @@ fn use_tool(editor: &mut Editor, ui: &egui::Ui, response: &egui::Response, ray: 
             let labelled = editor.project().labelled.clone();
             let corners = &editor.faces.polygons[hit.polygon].vertices;
             let edge = [corners[hit.edge], corners[(hit.edge + 1) % corners.len()]];
-            let onwards = ui.input(|i| i.modifiers.shift);
+            let onwards = ui.input(clicked_with_shift);
             if let Some(command) = tool.label(&labelled, face, edge, onwards) {
                 editor.act(command);
             }
@@ -136,6 +136,13 @@ fn use_tool(editor: &mut Editor, ui: &egui::Ui, response: &egui::Response, ray: 
         }
         _ => {}
     }
+}
+
+/// Whether Shift was down when the button came up; by the time of the frame it may be up again.
+fn clicked_with_shift(input: &egui::InputState) -> bool {
+    input.events.iter().any(|event| {
+        matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.shift)
+    })
 }
 
 /// Outlines what the pointer is over: an edge for the edge tools, a face for the others.
