@@ -155,7 +155,8 @@ impl Command {
                 let counts = EdgeCounts::from_size(&after.labelled, size)?;
                 let stitches = tessellate(&after.labelled, &counts)?;
                 if after.size != size {
-                    after.material = Material::for_loop_width(size.width);
+                    // Yarn as thick as the stitches came out: on short edges they are narrower than was asked for.
+                    after.material = Material::for_loop_width(mean_width(&stitches));
                 }
                 after.size = size;
                 after.scene.pins.clear();
@@ -198,6 +199,14 @@ impl Command {
         }
         Ok(after)
     }
+}
+
+/// Mean width of a stitch along its course edges [m].
+fn mean_width(stitches: &StitchMesh) -> f64 {
+    let mesh = stitches.mesh();
+    let course = mesh.edges().filter(|e| !stitches.is_wale(mesh.edge_sides(*e).0));
+    let (sum, count) = course.fold((0.0, 0), |(sum, n), e| (sum + mesh.edge_length(e), n + 1));
+    sum / f64::from(count.max(1))
 }
 
 /// Changes labels. The fabric stays until it is tessellated anew, as it was made from labels that were complete.

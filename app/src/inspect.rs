@@ -155,7 +155,7 @@ impl std::fmt::Display for Inspection {
             writeln!(f, "{} loops: {}", self.loops, stitches.join(", "))?;
             writeln!(f, "{} contact nodes, {} degrees of freedom", self.contact_nodes, self.dofs)?;
             let YarnCount { open, closed } = self.yarns;
-            writeln!(f, "{:.2} m of yarn: {open} pieces with ends, {closed} rings", self.yarn_length_m)?;
+            writeln!(f, "{:.2} m of yarn: {open} with ends, {closed} closed", self.yarn_length_m)?;
             let (course, wale) = (self.mean_course_spacing_mm, self.mean_wale_spacing_mm);
             writeln!(f, "rows {course:.2} mm apart, stitches {wale:.2} mm")?;
         }

@@ -8,9 +8,9 @@ const ROWS: [u32; 7] = [0x56b4e9, 0xd55e00, 0xf0e442, 0x0072b2, 0xe69f00, 0x009e
 const ODD_ROW: f32 = 0.82;
 
 /// Course edges, along a row.
-pub const COURSE_EDGE: [f32; 3] = hex(0x2f6f9f);
+pub const COURSE_EDGE: [f32; 3] = hex(0x12324a);
 /// Wale edges, across the rows.
-pub const WALE_EDGE: [f32; 3] = hex(0xb3472f);
+pub const WALE_EDGE: [f32; 3] = hex(0x9c2a12);
 /// Edges that have no label yet.
 pub const UNLABELLED_EDGE: [f32; 3] = hex(0x8a8780);
 /// Faces that have no row yet.
@@ -22,9 +22,12 @@ pub const SELECTED: [f32; 3] = hex(0xffb000);
 /// Yarn nobody has chosen a colour for: undyed wool.
 pub const YARN: [f32; 3] = hex(0xe4d6bd);
 
+/// How much white the row colours are mixed with, so that edges and arrows stand out on the dark ones too.
+const ROW_TINT: f32 = 0.3;
+
 /// Colour of a row of labels.
 pub fn row(index: usize) -> [f32; 3] {
-    hex(ROWS[index % ROWS.len()])
+    hex(ROWS[index % ROWS.len()]).map(|channel| channel + (1.0 - channel) * ROW_TINT)
 }
 
 /// Colour of a stitch by its symbol (`k`, `p`, `y`, `kp`, `d12k`, …) in a row.

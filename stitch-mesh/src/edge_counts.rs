@@ -65,7 +65,7 @@ impl EdgeCounts {
             return Err(CountError::StitchSize(size.width.min(size.height)));
         }
         let mesh = labelled.mesh();
-        let count = |length: f64, unit: f64| (length / unit).round().clamp(1.0, 1e6) as u32;
+        let count = |length: f64, unit: f64| rounded(length / unit) as u32;
         let mut counts = course_counts(labelled, size.width);
         for row in labelled.rows() {
             let wales: Vec<Wales> = row.faces.iter().filter_map(|f| labelled.wales(*f)).collect();
@@ -88,13 +88,18 @@ impl EdgeCounts {
     }
 }
 
+/// A count: halves go up even when rounding error has taken a trifle from them, so that equal edges get equal counts.
+fn rounded(ideal: f64) -> f64 {
+    (ideal + 1e-6).round().clamp(1.0, 1e6)
+}
+
 /// Stitches on course edges, from the bottom of the fabric upwards, so that columns go on straight where they can.
 fn course_counts(labelled: &LabelledMesh, width: f64) -> Vec<u32> {
     /// How far an edge may be from the length that its count stands for [stitches].
     const SLACK: f64 = 1.0;
     let mesh = labelled.mesh();
     let mut counts: Vec<Option<u32>> = vec![None; mesh.edge_count()];
-    let ideal = |e: EdgeId| (mesh.edge_length(e) / width).clamp(1.0, 1e6);
+    let ideal = |e: EdgeId| mesh.edge_length(e) / width;
     // Chains of opposite course edges through faces with one edge below and one above; each begins where nothing is below.
     let across = |e: EdgeId| {
         let (first, twin) = mesh.edge_sides(e);
@@ -111,9 +116,9 @@ fn course_counts(labelled: &LabelledMesh, width: f64) -> Vec<u32> {
     // Where rows run in a circle up the wale there is no beginning; any edge left over will do.
     for begins in [true, false] {
         for start in mesh.edges().filter(|e| begins != has_below[e.index()]) {
-            let mut at = Some((start, ideal(start).round()));
+            let mut at = Some((start, rounded(ideal(start))));
             while let Some((edge, below)) = at.filter(|(e, _)| counts[e.index()].is_none()) {
-                let count = if (ideal(edge) - below).abs() <= SLACK { below } else { ideal(edge).round() };
+                let count = if (ideal(edge) - below).abs() <= SLACK { below } else { rounded(ideal(edge)) };
                 counts[edge.index()] = Some(count as u32);
                 at = across(edge).map(|above| (above, count));
             }
@@ -167,6 +172,14 @@ mod tests {
         let stitches = tessellate(&labelled, &counts).unwrap();
         assert_eq!(stitches.rows().len(), 3 * 13);
         assert!(stitches.rows().iter().all(|r| r.faces.len() == 20));
+    }
+
+    #[test]
+    fn equal_edges_get_equal_counts_at_a_tie() {
+        let labelled = grid(7, 1);
+        let counts = EdgeCounts::from_size(&labelled, StitchSize::of_width(0.01 / 1.5)).unwrap();
+        let stitches = tessellate(&labelled, &counts).unwrap();
+        assert!(stitches.rows().iter().all(|r| r.faces.len() == 14));
     }
 
     #[test]

@@ -235,29 +235,33 @@ fn run(arguments: Arguments) -> Result<()> {
             report(&project, print)
         }
         Verb::Relax { project, output, stage: RelaxStage::Contact, print } => {
-            let project = simulate::relax(Project::open(&project)?)?;
+            let project =
+                simulate::relax(Project::open(&project)?).with_context(|| project.display().to_string())?;
             project.save(&output)?;
             report(&project, print)
         }
         Verb::Simulate { project, output, scene, seconds, solver: Solver::Cpu, frames, print } => {
-            let project = Project::open(&project)?;
-            let project = simulate::simulate(project, scene.as_deref(), seconds, frames.as_deref())?;
+            let opened = Project::open(&project)?;
+            let project = simulate::simulate(opened, scene.as_deref(), seconds, frames.as_deref())
+                .with_context(|| project.display().to_string())?;
             project.save(&output)?;
             report(&project, print)
         }
         Verb::Render { project, output, stage, view, size, print } => {
+            let path = project.display().to_string();
             let project = Project::open(&project)?;
             let stage = stage.unwrap_or(match project.fabric {
                 Some(_) => Stage::Yarn,
                 None => Stage::Labels,
             });
-            picture(&Gpu::headless()?, &project, stage, view, size, &output)?;
+            picture(&Gpu::headless()?, &project, stage, view, size, &output).context(path)?;
             print.print(&json!({"file": output, "size": size}), &output.display());
             Ok(())
         }
         Verb::Export { project, output, print } => {
+            let path = project.display().to_string();
             let project = Project::open(&project)?;
-            let fabric = project.fabric()?;
+            let fabric = project.fabric().context(path)?;
             let curves = curves(&fabric.net, &fabric.state(), project.material.drawn_radius);
             files::write(&output, &export::encode(&curves, &output)?)?;
             let points: usize = curves.curves.iter().map(|c| c.points.len()).sum();

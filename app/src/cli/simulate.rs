@@ -37,8 +37,10 @@ pub fn settle(mut project: Project, scene: Scene, limit: f64, what: &'static str
         if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     bar.finish_and_clear();
-    if settled == Settled::Interrupted {
-        bail!("stopped; nothing was written");
+    match settled {
+        Settled::Interrupted => bail!("stopped; nothing was written"),
+        Settled::TimeLimit => tracing::warn!("still moving after {limit} s"),
+        Settled::Still => {}
     }
     project.scene = scene;
     store(&mut project, &simulator);

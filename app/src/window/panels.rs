@@ -39,6 +39,8 @@ pub struct State {
     pub aspect: f32,
     /// Material, scene and whether the yarn is as laid, as the simulation last got them.
     pub simulated: Option<(Material, Scene, bool)>,
+    /// The yarn while a slider moves.
+    pub material: Option<Material>,
     /// Facts of the revision they belong to.
     pub facts: Option<(u64, Inspection)>,
 }
@@ -51,6 +53,7 @@ impl State {
             width_mm: 1e3 * view.project.size.width,
             aspect: 4.0 / 3.0,
             simulated: None,
+            material: None,
             facts: None,
         }
     }
@@ -260,24 +263,32 @@ fn yarn(editor: &mut Editor, ui: &mut Ui) {
             editor.act(Command::SetScene { scene });
         }
     }
-    let mut material = editor.project().material.clone();
-    let slider = |ui: &mut Ui, name: &str, value: &mut f64, low: f64, high: f64| {
-        ui.label(name);
-        let response = ui.add(
-            egui::Slider::new(value, low..=high)
-                .logarithmic(true)
-                .custom_formatter(|v, _| format!("{v:.1e}")),
-        );
-        response.drag_stopped() || response.lost_focus()
-    };
+    ui.heading("Yarn");
     let defaults = Material::for_loop_width(editor.project().size.width);
-    let around = |v: f64| (v / 20.0, v * 20.0);
-    let (low, high) = around(defaults.bending_modulus);
-    let mut changed = slider(ui, "Bending modulus, Pa m²", &mut material.bending_modulus, low, high);
-    let (low, high) = around(defaults.wrap_stiffness);
-    changed |= slider(ui, "Wrapping, N", &mut material.wrap_stiffness, low, high);
-    changed |= slider(ui, "Friction", &mut material.friction, 0.01, 2.0);
-    if changed && material != editor.project().material {
+    let mut material = editor.panel.material.take().unwrap_or_else(|| editor.project().material.clone());
+    let (mut moving, mut done) = (false, false);
+    let fields = [
+        ("Bending", &mut material.bending_modulus, defaults.bending_modulus),
+        ("Wrapping", &mut material.wrap_stiffness, defaults.wrap_stiffness),
+        ("Friction", &mut material.friction, defaults.friction),
+    ];
+    for (name, value, default) in fields {
+        // Shown as multiples of the wool that goes with the stitch size; absolute values stand in the project.
+        let mut factor = *value / default;
+        let label = ui.label(format!("{name}  × {factor:.2}"));
+        let slider = egui::Slider::new(&mut factor, 0.05..=20.0).logarithmic(true).show_value(false);
+        let response = ui.add(slider).labelled_by(label.id);
+        if response.changed() {
+            *value = factor * default;
+        }
+        moving |= response.dragged();
+        done |= response.drag_stopped() || (response.changed() && !response.dragged());
+    }
+    if moving {
+        // The fabric answers while the slider moves; the history gets one step when it is let go.
+        editor.sim.send(SimCommand::SetMaterial(material.clone()));
+        editor.panel.material = Some(material);
+    } else if done {
         editor.act(Command::SetMaterial { material });
     }
 }
@@ -296,7 +307,7 @@ pub fn right(editor: &mut Editor, ui: &mut Ui) {
             ui.label(format!("{} faces in {} rows", facts.faces, facts.rows));
             if facts.loops > 0 {
                 ui.label(format!("{} loops, {:.1} m of yarn", facts.loops, facts.yarn_length_m));
-                ui.label(format!("{} pieces, {} rings", facts.yarns.open, facts.yarns.closed));
+                ui.label(format!("{} with ends, {} rings", facts.yarns.open, facts.yarns.closed));
                 for (symbol, count) in &facts.stitches {
                     ui.horizontal(|ui| {
                         swatch(ui, symbol);

@@ -49,14 +49,15 @@ pub fn show(editor: &mut Editor, ui: &mut egui::Ui) {
             }
             Err(error) => editor.error = Some(format!("{error:#}")),
         }
-        ui.ctx().data_mut(|data| {
-            // A last frame in full once everything is at rest.
-            let was_moving = data.get_temp::<bool>(response.id).unwrap_or(false);
+        // A last frame in full once everything is at rest.
+        let was_moving = ui.ctx().data_mut(|data| {
+            let before = data.get_temp::<bool>(response.id).unwrap_or(false);
             data.insert_temp(response.id, moving);
-            if was_moving && !moving {
-                ui.ctx().request_repaint();
-            }
+            before
         });
+        if was_moving && !moving {
+            ui.ctx().request_repaint();
+        }
     });
 }
 

@@ -16,10 +16,10 @@
 //! yarns of Yuksel et al. Fig. 8 come out by themselves.
 //!
 //! # Practice
-//! 1. [`cell`]: nodes, pieces of yarn and stitch contacts of each face;
-//! 2. [`border`]: cast-on along bottom edges, bind-off along top edges, rows joined at their ends so that a flat piece is one
+//! 1. `cell`: nodes, pieces of yarn and stitch contacts of each face;
+//! 2. `border`: cast-on along bottom edges, bind-off along top edges, rows joined at their ends so that a flat piece is one
 //!    yarn going back and forth;
-//! 3. [`trace`]: pieces joined into yarns, arc lengths measured.
+//! 3. `trace`: pieces joined into yarns, arc lengths measured.
 //!
 //! The paper makes the first row of faces the cast-on. Here cast-on and bind-off lie outside of the mesh, so that every face
 //! stays a stitch that can be chosen, and borders may lie anywhere.
