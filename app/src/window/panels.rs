@@ -263,7 +263,7 @@ fn yarn(editor: &mut Editor, ui: &mut Ui) {
             editor.act(Command::SetScene { scene });
         }
     }
-    ui.heading("Yarn");
+    ui.heading("Material");
     let defaults = Material::for_loop_width(editor.project().size.width);
     let mut material = editor.panel.material.take().unwrap_or_else(|| editor.project().material.clone());
     let (mut moving, mut done) = (false, false);
