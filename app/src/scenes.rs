@@ -45,11 +45,12 @@ pub fn scene(name_or_file: &str, state: &YarnState) -> Result<Scene> {
             Scene { bodies: vec![sphere, ground(center.y - radius)], ..Scene::default() }
         }
         "form" => Scene {
-            // Shoulders, chest and waist of a child's dress form.
+            // Shoulders, chest, waist and hips of a child's dress form; it fills the pullover, so that nothing folds.
             bodies: vec![
                 capsule(0.115, 0.285, 0.030),
-                capsule(0.075, 0.20, 0.075),
-                capsule(0.070, 0.06, 0.078),
+                capsule(0.075, 0.20, 0.083),
+                capsule(0.075, 0.10, 0.085),
+                capsule(0.078, 0.00, 0.086),
             ],
             // A garment swings slowly: twice the usual step shows nothing else and takes half the time.
             time_step: 0.01,

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 const UNDYED: [f32; 3] = [0.72, 0.62, 0.47];
 
 /// Length of a tail, in steps of [`DraftNode::outward`].
-const TAIL: f64 = 2.0;
+const TAIL: f64 = 1.2;
 
 /// Makes the net of a draft.
 pub fn trace(mut draft: Draft) -> YarnNet {
