@@ -18,7 +18,8 @@ use crate::material::Material;
 use crate::model::{FROZEN, Model};
 use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
-use crate::solver::cholesky::{Cholesky, SolveError};
+use crate::solver::Solver;
+use crate::solver::cholesky::SolveError;
 use glam::DVec3;
 use stitch_mesh::yarn_net::YarnState;
 
@@ -46,8 +47,8 @@ pub enum Rejection {
 /// The pieces of a simulator that a step works on.
 pub(crate) struct Stepper {
     pub model: Model,
-    system: System,
-    cholesky: Cholesky,
+    pub system: System,
+    pub solver: Solver,
     /// Mass of the yarn around each node [node_count] [kg].
     masses: Vec<f64>,
 }
@@ -63,9 +64,9 @@ pub(crate) struct Stuck {
 impl Stepper {
     pub fn new(model: Model, material: &Material) -> Result<Self, SolveError> {
         let system = System::new(&model);
-        let cholesky = Cholesky::new(&model, &system.matrix)?;
+        let solver = Solver::new(&model, &system.matrix)?;
         let masses = model.node_masses(material);
-        Ok(Self { model, system, cholesky, masses })
+        Ok(Self { model, system, solver, masses })
     }
 
     pub fn set_material(&mut self, material: &Material) {
@@ -86,8 +87,9 @@ impl Stepper {
         self.system.assemble(&self.model, start);
         let anchor = self.add_friction(now, material, h);
         let touched = self.add_bodies(state, material, scene, h) + self.add_pins(state, scene, h);
-        self.cholesky.solve(&self.system.matrix, &mut self.system.rhs)?;
-        let (mut velocity, rate) = self.solved();
+        let mut solution = self.rates(state);
+        self.solver.solve(&self.model, &self.system.matrix, &self.system.rhs, &mut solution)?;
+        let (mut velocity, rate) = self.split(&solution);
         if touched == 0 {
             let kept = Rotation { omega: rotation.omega / (1.0 + h * material.mass_damping), ..rotation };
             self.keep_rotation(state, &mut velocity, kept);
@@ -166,12 +168,25 @@ impl Stepper {
         }
     }
 
-    /// The velocities of nodes and the rates of sliding coordinates that the system was solved for.
-    fn solved(&self) -> (Vec<DVec3>, Vec<f64>) {
-        let v = &self.system.rhs;
+    /// The velocities of nodes and the rates of sliding coordinates as one vector of unknowns.
+    fn rates(&self, state: &YarnState) -> Vec<f64> {
+        let mut rates = vec![0.0; self.model.dof_count()];
+        for (start, v) in self.model.start.iter().zip(&state.velocity) {
+            rates[*start as usize..*start as usize + 3].copy_from_slice(&v.to_array());
+        }
+        for (dof, rate) in
+            self.model.sliding.iter().zip(&state.sliding_velocity).filter(|(d, _)| **d != FROZEN)
+        {
+            rates[*dof as usize] = *rate;
+        }
+        rates
+    }
+
+    /// The velocities of nodes and the rates of sliding coordinates out of one vector of unknowns.
+    fn split(&self, rates: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
         let nodes = &self.model.start[..self.model.net.nodes.len()];
-        let velocity = nodes.iter().map(|s| DVec3::from_slice(&v[*s as usize..*s as usize + 3])).collect();
-        let rate = |dof: &u32| if *dof == FROZEN { 0.0 } else { v[*dof as usize] };
+        let velocity = nodes.iter().map(|s| DVec3::from_slice(&rates[*s as usize..])).collect();
+        let rate = |dof: &u32| if *dof == FROZEN { 0.0 } else { rates[*dof as usize] };
         (velocity, self.model.sliding.iter().map(rate).collect())
     }
 

@@ -167,6 +167,21 @@ fn absurd_forces_are_rejected_and_leave_the_state_as_it_was() {
 }
 
 #[test]
+fn time_step_recovers_after_rejections() {
+    let net = stockinette(6, 6);
+    let scene = Scene { time_step: 1e-2, ..Scene::empty() };
+    let material = Material::for_loop_width(WIDTH);
+    let mut state = net.laid_state();
+    // One node so fast that only small steps take it along.
+    state.velocity[50] = DVec3::Z * 2.0;
+    let mut simulator = Simulator::new(&net, material, scene, state).unwrap();
+    let first = simulator.step().unwrap();
+    assert!(first.rejected > 0 && first.time_step < 1e-2, "{first:?}");
+    let later: Vec<f64> = (0..20).map(|_| simulator.step().unwrap().time_step).collect();
+    assert!(later[10..].iter().all(|h| *h == 1e-2), "{later:?}");
+}
+
+#[test]
 fn settling_ends() {
     let net = swatch(6, 6, |_, t| t % 2 == 1);
     let mut simulator = common::free(&net);

@@ -2,13 +2,16 @@
 
 mod common;
 
+use std::sync::Arc;
 use std::time::Instant;
+use stitch_mesh::{lay::lay, pieces::tube, tessellate::StitchSize};
 
 #[test]
 #[ignore = "prints timings and checks nothing"]
 fn steps_of_stockinette() {
-    for side in [24, 56] {
-        let net = common::stockinette(side, side);
+    let tube = lay(&tube(60, 60, StitchSize::of_width(common::WIDTH)).unwrap());
+    let nets = [("24 × 24", common::stockinette(24, 24)), ("56 × 56", common::stockinette(56, 56))];
+    for (name, net) in nets.into_iter().chain([("tube, 60 × 60", Arc::new(tube))]) {
         let start = Instant::now();
         let mut simulator = common::free(&net);
         let setup = start.elapsed();
@@ -20,7 +23,7 @@ fn steps_of_stockinette() {
         let step = start.elapsed() / steps;
         let start = Instant::now();
         sim_core::curves(&net, simulator.state(), simulator.material().drawn_radius);
-        println!("{side} × {side}: setup {setup:.0?}, step {step:.1?}, curves {:.1?}", start.elapsed());
+        println!("{name}: setup {setup:.0?}, step {step:.1?}, curves {:.1?}", start.elapsed());
         println!("  {:?}", simulator.facts());
     }
 }

@@ -1,5 +1,6 @@
 //! What the tests share.
 
+pub(crate) mod fabrics;
 pub(crate) mod finite_difference;
 
 use crate::model::Model;

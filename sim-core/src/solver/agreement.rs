@@ -1,0 +1,165 @@
+//! Tests that both solvers do the same.
+
+use super::gradients::{self, NotConverged};
+use super::{Incomplete, Solver};
+use crate::material::Material;
+use crate::model::Model;
+use crate::scene::{Pin, Scene};
+use crate::step::{Stepper, Stuck};
+use crate::testing::fabrics::fabrics;
+use glam::DVec3;
+use std::sync::Arc;
+use stitch_mesh::{lay::lay, stitch_mesh::StitchMesh};
+
+/// Iterations that are enough for every fabric here.
+const ENOUGH: usize = 60;
+
+/// Largest difference between velocities, relative to the largest velocity.
+const CLOSE: f64 = 1e-3;
+
+/// h [s].
+const STEP: f64 = 5e-3;
+
+/// A fabric that hangs by one node, after a few steps.
+struct Hanging {
+    stepper: Stepper,
+    material: Material,
+    scene: Scene,
+    now: Stuck,
+}
+
+impl Hanging {
+    fn new(stitches: &StitchMesh) -> Self {
+        let net = Arc::new(lay(stitches));
+        let mut state = net.laid_state();
+        let mut noise = (0..).map(|i| 1e-5 * (crate::noise::unit_hash(i) - 0.5));
+        let mut next = || noise.next().unwrap();
+        state.position.iter_mut().for_each(|x| *x += DVec3::new(next(), next(), next()));
+        let material = Material::for_loop_width(3e-3);
+        let pin = Pin { node: 0, target: net.nodes[0].position, stiffness: 10.0 };
+        let scene = Scene { pins: vec![pin], time_step: STEP, ..Scene::default() };
+        let model = Model::new(net).unwrap();
+        let anchor = state.sliding.clone();
+        let stepper = Stepper::new(model, &material).unwrap();
+        let mut hanging = Self { stepper, material, scene, now: Stuck { state, anchor } };
+        hanging.stepper.solver = hanging.direct();
+        // From the laid shape only small steps go well at first.
+        let mut h = 0.5 * STEP;
+        while h <= STEP {
+            match hanging.stepper.step(&hanging.now, &hanging.material, &hanging.scene, h) {
+                Ok(next) => (hanging.now, h) = (next, 1.1 * h),
+                Err(_) => h *= 0.5,
+            }
+        }
+        hanging
+    }
+
+    fn step(&mut self) -> Stuck {
+        self.stepper.step(&self.now, &self.material, &self.scene, STEP).unwrap()
+    }
+
+    fn direct(&self) -> Solver {
+        Solver::direct(&self.stepper.model, &self.stepper.system.matrix).unwrap()
+    }
+
+    fn iterative(&self) -> Solver {
+        Solver::iterative(&self.stepper.model, &self.stepper.system.matrix)
+    }
+
+    /// Solves the last system by conjugate gradients alone.
+    fn iterate(&self, preconditioner: &mut Incomplete) -> Result<usize, NotConverged> {
+        let Stepper { model, system, .. } = &self.stepper;
+        let nodes = &model.start[..model.net.nodes.len()];
+        let mut x = vec![0.0; model.dof_count()];
+        gradients::solve(&system.matrix, preconditioner, nodes, &system.rhs, &mut x)
+    }
+}
+
+/// Largest difference between the velocities of `a` and `b`, relative to the largest velocity.
+fn difference(a: &Stuck, b: &Stuck) -> f64 {
+    let (a, b) = (&a.state.velocity, &b.state.velocity);
+    let largest = a.iter().map(|v| v.length()).fold(0.0, f64::max);
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn both_solvers_take_the_same_step() {
+    for (name, stitches) in fabrics() {
+        let mut hanging = Hanging::new(&stitches);
+        let expected = hanging.step();
+        let mut preconditioner = Incomplete::new(&hanging.stepper.model, &hanging.stepper.system.matrix);
+        preconditioner.factorise(&hanging.stepper.system.matrix).unwrap();
+        let iterations = hanging.iterate(&mut preconditioner).unwrap();
+        hanging.stepper.solver = hanging.iterative();
+        let difference = difference(&expected, &hanging.step());
+        println!("{name}: {iterations} iterations, difference {difference:.1e}");
+        assert!(iterations < ENOUGH, "{name}: {iterations} iterations");
+        assert!(difference < CLOSE, "{name}: {difference:e}");
+    }
+}
+
+#[test]
+fn a_wrong_matrix_is_noticed() {
+    let [(_, stitches), ..] = fabrics();
+    let mut hanging = Hanging::new(&stitches);
+    let expected = hanging.step();
+    let Stepper { model, system, .. } = &mut hanging.stepper;
+    let solve = |matrix: &_, rhs: &[f64]| {
+        let mut x = vec![0.0; rhs.len()];
+        Solver::iterative(model, matrix).solve(model, matrix, rhs, &mut x).unwrap();
+        let mut solved = expected.clone();
+        for (v, start) in solved.state.velocity.iter_mut().zip(&model.start) {
+            *v = DVec3::from_slice(&x[*start as usize..]);
+        }
+        difference(&expected, &solved)
+    };
+    assert!(solve(&system.matrix, &system.rhs) < CLOSE);
+    let middle = model.start[model.net.nodes.len() / 2] as usize;
+    let entry = system.matrix.value[system.matrix.column[middle] as usize];
+    system.matrix.add_diagonal(middle, 0.1 * entry);
+    assert!(solve(&system.matrix, &system.rhs) > CLOSE);
+}
+
+#[test]
+fn a_wrong_preconditioner_is_noticed() {
+    let [(_, stitches), ..] = fabrics();
+    let mut hanging = Hanging::new(&stitches);
+    hanging.step();
+    let matrix = &hanging.stepper.system.matrix;
+    let mut preconditioner = Incomplete::new(&hanging.stepper.model, matrix);
+    let mut diagonal = matrix.clone();
+    for j in 0..diagonal.dof_count() {
+        let below = diagonal.column[j] as usize + 1..diagonal.column[j + 1] as usize;
+        diagonal.value[below].fill(0.0);
+    }
+    preconditioner.factorise(&diagonal).unwrap();
+    assert!(hanging.iterate(&mut preconditioner).is_err());
+}
+
+#[test]
+fn what_has_no_solution_has_none_either_way() {
+    let [(_, stitches), ..] = fabrics();
+    let mut hanging = Hanging::new(&stitches);
+    let [mut direct, mut iterative] = [hanging.direct(), hanging.iterative()];
+    let Stepper { model, system, .. } = &mut hanging.stepper;
+    for wrong in [-1.0, f64::NAN] {
+        system.matrix.add_diagonal(0, wrong);
+        let mut x = vec![0.0; system.rhs.len()];
+        assert!(direct.solve(model, &system.matrix, &system.rhs, &mut x).is_err());
+        assert!(iterative.solve(model, &system.matrix, &system.rhs, &mut x).is_err());
+    }
+}
+
+#[test]
+fn same_bits_on_one_thread_and_on_two() {
+    let go = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let [(_, stitches), ..] = fabrics();
+            let mut hanging = Hanging::new(&stitches);
+            hanging.stepper.solver = hanging.iterative();
+            hanging.step().state
+        })
+    };
+    assert_eq!(go(1), go(2));
+}
