@@ -13,8 +13,8 @@ use super::matrix::BlockMatrix;
 use super::product::Product;
 use glam::{DMat3, DVec3};
 
-/// Error at which a solution is good enough, relative to the solution, in the norm of the energy. Positions after 0.2 s
-/// of hanging stockinette, 24 × 24, differ from those of the direct solver by 100, 2 and 0.2 µm, of 65 mm, at 1e-3, 1e-4 and 1e-5.
+/// Error at which a solution is good enough, relative to the solution, in the norm of the energy. Hanging stockinette of 24 × 24
+/// stitches is then, after 0.2 s and 65 mm, at most 8 µm from where the direct solver has it; at 1e-3 it is some 100 µm.
 const TOLERANCE: f64 = 1e-4;
 
 /// Iterations after which to give up; by then a direct solution would have been faster.
