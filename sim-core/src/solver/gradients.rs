@@ -2,7 +2,7 @@
 //!
 //! # Theory
 //! Hestenes and Stiefel, preconditioned with M ≈ A. √(r · M⁻¹ r) estimates the error in the norm of the energy; it is
-//! compared with √(b · M⁻¹ b), that of the solution itself.
+//! compared with √(b · x), the norm of the solution itself.
 //!
 //! A solution stopped early lacks some of the motion of the fabric as a whole, which costs no energy and is noticed
 //! first: without this, free fabric drifts. So in the end the error is made exactly zero along the three
@@ -13,8 +13,8 @@ use super::matrix::BlockMatrix;
 use super::product::Product;
 use glam::{DMat3, DVec3};
 
-/// Error at which a solution is good enough, relative to the solution, in the norm of the energy. Positions after 0.2 s
-/// differ from those of the direct solver by 1e-3, 3e-5, 3e-6 of the way at 1e-3, 1e-4, 1e-5.
+/// Error at which a solution is good enough, relative to the solution, in the norm of the energy. Hanging stockinette of 24 × 24
+/// stitches is then, after 0.2 s and 65 mm, at most 8 µm from where the direct solver has it; at 1e-3 it is some 100 µm.
 const TOLERANCE: f64 = 1e-4;
 
 /// Iterations after which to give up; by then a direct solution would have been faster.
@@ -35,15 +35,13 @@ pub(crate) fn solve(
     let mut product = Product::new(matrix);
     let mut z = vec![0.0; b.len()];
     let mut q = vec![0.0; b.len()];
-    preconditioner.apply(b, &mut z);
-    let good_enough = TOLERANCE.powi(2) * dot(b, &z);
     product.set(matrix, x, &mut q);
     let mut r: Vec<f64> = b.iter().zip(&q).map(|(b, q)| b - q).collect();
     preconditioner.apply(&r, &mut z);
     let mut error = dot(&r, &z);
     let mut p = z.clone();
     let mut iterations = 0;
-    while error.is_nan() || error > good_enough {
+    while error.is_nan() || error > TOLERANCE.powi(2) * dot(b, x).abs() {
         product.set(matrix, &p, &mut q);
         let curvature = dot(&p, &q);
         if iterations == MOST_ITERATIONS || !(curvature > 0.0 && error.is_finite()) {

@@ -1,4 +1,27 @@
 //! The linear system of a step: a sparse symmetric matrix of node blocks, and two ways to solve it.
+//!
+//! # Theory
+//! A complete factorisation of n unknowns takes some n^1.5 operations. Conjugate gradients with an incomplete one take
+//! time in proportion to n, since what makes the system hard is local: axial stretch. They solve all but small systems; the
+//! complete factorisation solves those, and any that the iterations fail on.
+//!
+//! # Practice
+//! Measured at h = 5 ms on two busy cores, a step in all:
+//!
+//! | fabric | complete | incomplete | iterations |
+//! |---|---|---|---|
+//! | 8 × 8 | 7.2 ms | 5.6 ms | 14 |
+//! | 16 × 16 | 22 ms | 20 ms | 14 |
+//! | 24 × 24 | 70 … 84 ms | 50 … 57 ms | 13 |
+//! | 56 × 56 | 740 … 780 ms | 240 … 460 ms | 20 |
+//! | tube, 60 × 60 | 1 100 ms | 440 ms | 15 … 19 |
+//!
+//! - Blocks of two courses of a wale, taken from the net, and single precision do for plain, rib, garter, seed and twisted
+//!   fabric, tubes and increases: 9 … 20 iterations, as many at any size.
+//! - Without fill, IC(0), there are blocks that are not positive definite even in stockinette, and 52 … 300 iterations (of
+//!   24 with one level of fill, to 1e-6). Stacks of three and gathered rows stay hard with one level: 46 … 48.
+//! - Half of the time of an iteration and more is that of reading the factor (36 MB for 3 600 loops), so a second
+//!   thread helps only as far as memory does.
 
 #[cfg(test)]
 mod agreement;
