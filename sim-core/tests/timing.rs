@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 use std::time::Instant;
-use stitch_mesh::{lay::lay, pieces::tube, tessellate::StitchSize};
+use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube};
 
 #[test]
 #[ignore = "prints timings and checks nothing"]

@@ -43,12 +43,18 @@ use matrix::BlockMatrix;
 /// Unknowns above which conjugate gradients are faster than a complete factorisation.
 const CROSSOVER: usize = 3000;
 
+/// Systems solved directly after one that conjugate gradients failed on: what made that one hard is still there in the next
+/// few, and trying in vain costs as much as solving.
+const DIRECT_AFTER_FAILURE: u32 = 8;
+
 /// Solves the systems of one net.
 pub(crate) struct Solver {
     /// None for a small system.
     preconditioner: Option<Incomplete>,
     /// Made when it is first needed.
     direct: Option<Cholesky>,
+    /// Systems to go before conjugate gradients are tried again.
+    direct_for: u32,
 }
 
 impl Solver {
@@ -63,12 +69,12 @@ impl Solver {
 
     /// Solves by a complete factorisation.
     pub fn direct(model: &Model, matrix: &BlockMatrix) -> Result<Self, SolveError> {
-        Ok(Self { preconditioner: None, direct: Some(Cholesky::new(model, matrix)?) })
+        Ok(Self { preconditioner: None, direct: Some(Cholesky::new(model, matrix)?), direct_for: 0 })
     }
 
     /// Solves by conjugate gradients, and where they fail by a complete factorisation.
     pub fn iterative(model: &Model, matrix: &BlockMatrix) -> Self {
-        Self { preconditioner: Some(Incomplete::new(model, matrix)), direct: None }
+        Self { preconditioner: Some(Incomplete::new(model, matrix)), direct: None, direct_for: 0 }
     }
 
     /// Replaces the guess in `x` by the solution of `matrix` x = `rhs`.
@@ -79,17 +85,17 @@ impl Solver {
         rhs: &[f64],
         x: &mut [f64],
     ) -> Result<(), SolveError> {
-        if let Some(preconditioner) = &mut self.preconditioner
-            && preconditioner.factorise(matrix).is_ok()
-        {
+        if self.direct_for > 0 {
+            self.direct_for -= 1;
+        } else if let Some(preconditioner) = &mut self.preconditioner {
             let nodes = &model.start[..model.net.nodes.len()];
-            match gradients::solve(matrix, preconditioner, nodes, rhs, x) {
-                Ok(iterations) => {
-                    tracing::trace!(iterations, "solved");
-                    return Ok(());
-                }
-                Err(failed) => tracing::debug!(?failed, "solving directly"),
+            if preconditioner.factorise(matrix).is_ok()
+                && gradients::solve(matrix, preconditioner, nodes, rhs, x).is_ok()
+            {
+                return Ok(());
             }
+            tracing::debug!("conjugate gradients failed, solving directly");
+            self.direct_for = DIRECT_AFTER_FAILURE;
         }
         let direct = match &mut self.direct {
             Some(direct) => direct,
