@@ -1,12 +1,12 @@
 //! Small fabrics of every construction.
 
 use glam::DVec3;
+use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::pieces::{rectangle, tube};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::tessellate::StitchSize;
 
 const WIDTH: f64 = 3e-3;
 

@@ -228,7 +228,7 @@ fn fasten(
     draft: &mut Draft,
 ) -> Port {
     let along = (right - left) * if way == BindOff::Leftwards { -1.0 } else { 1.0 };
-    let corners = [left, right, right + up, left + up].map(|c| c + along * 0.6 + up * 0.2);
+    let corners = [left, right, right + up, left + up].map(|c| c + along * 0.8 + up * 0.3);
     let frame = FaceFrame::beyond_border(corners, normal.normalize_or(DVec3::Z));
     let mut port = || draft.new_port();
     let (entry, exit, legs) = (port(), port(), [port(), port()]);
