@@ -104,7 +104,7 @@ fn pullover() -> Mesh {
     const PANEL: i32 = 14; // faces across the front, and across the back
     const BODY: i32 = 9; // rows of faces from hem to underarm
     const YOKE: i32 = 6; // rows of faces from underarm to shoulder
-    const ARM: i32 = 2; // faces of each panel that end at the underarm, on each side
+    const ARM: i32 = 1; // faces of each panel that end at the underarm, on each side
     const NECK: i32 = 5; // first face of the neck, on each side
     let (half_width, depth, underarm, shoulder) = (0.165, 0.105, 0.21, 0.345);
     let across = |i: i32| f64::from(2 * i - PANEL) / f64::from(PANEL); // −1…1
@@ -118,7 +118,7 @@ fn pullover() -> Mesh {
             let slope = 0.035 * (s.abs() - 0.2).max(0.0);
             let y = body + t * (shoulder - underarm - slope);
             // The armhole curves inwards, the panel leans towards the shoulder line.
-            let narrow = 1.0 - 0.10 * (t * PI).sin().max(0.0);
+            let narrow = 1.0 - 0.16 * (t * PI / 2.0).sin().max(0.0);
             let hem = 1.0 + 0.06 * (1.0 - body / underarm);
             let x = half_width * hem * sin * if t > 0.0 { narrow } else { 1.0 };
             let z = depth * hem * cos.max(0.0).powf(0.6) * (1.0 - t * t).max(0.0).sqrt();
