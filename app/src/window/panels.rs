@@ -5,7 +5,6 @@ use super::session::{Request, View};
 use super::tools::Tool;
 use crate::command::Command;
 use crate::drawing::Stage;
-use crate::inspect::{Inspection, inspect};
 use crate::scenes;
 use egui::{RichText, Ui};
 use render::{NamedView, palette};
@@ -41,8 +40,6 @@ pub struct State {
     pub simulated: Option<(Material, Scene, bool)>,
     /// The yarn while a slider moves.
     pub material: Option<Material>,
-    /// Facts of the revision they belong to.
-    pub facts: Option<(u64, Inspection)>,
 }
 
 impl State {
@@ -54,7 +51,6 @@ impl State {
             aspect: 4.0 / 3.0,
             simulated: None,
             material: None,
-            facts: None,
         }
     }
 }
@@ -298,11 +294,7 @@ pub fn right(editor: &mut Editor, ui: &mut Ui) {
     egui::Panel::right("facts").exact_size(230.0).resizable(false).show(ui, |ui| {
         egui::ScrollArea::vertical().show(ui, |ui| {
             ui.heading("Fabric");
-            let revision = editor.view.revision;
-            if editor.panel.facts.as_ref().is_none_or(|(r, _)| *r != revision) {
-                editor.panel.facts = Some((revision, inspect(&editor.view.project)));
-            }
-            let Some((_, facts)) = &editor.panel.facts else { return };
+            let facts = &editor.view.facts;
             let [x, y, z] = facts.size_mm;
             ui.label(format!("{} faces in {} rows", facts.faces, facts.rows));
             if facts.loops > 0 {

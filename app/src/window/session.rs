@@ -5,6 +5,7 @@
 use crate::command::{Command, write_script};
 use crate::document::Document;
 use crate::files;
+use crate::inspect::{Inspection, inspect};
 use crate::project::Project;
 use anyhow::{Context, Result};
 use std::path::PathBuf;
@@ -39,6 +40,8 @@ pub struct View {
     pub revision: u64,
     /// The project.
     pub project: Project,
+    /// Facts about it.
+    pub facts: Inspection,
     /// The file it was read from or written to.
     pub path: Option<PathBuf>,
     /// Names of the commands done, oldest first.
@@ -177,6 +180,7 @@ impl Worker {
         View {
             revision: self.revision,
             project: self.document.project().clone(),
+            facts: inspect(self.document.project()),
             path: self.path.clone(),
             done: self.document.done().map(Command::name).collect(),
             redo: self.document.next_redo().map(Command::name),
