@@ -31,7 +31,7 @@ pub fn show(editor: &mut Editor, ui: &mut egui::Ui) {
         } else {
             highlight(editor, None);
         }
-        if response.drag_stopped() {
+        if !ui.input(|i| i.pointer.primary_down()) {
             editor.stroke = None;
             if editor.grabbed.is_some() {
                 editor.pull(None);
@@ -124,7 +124,9 @@ fn use_tool(editor: &mut Editor, ui: &egui::Ui, response: &egui::Response, ray: 
             editor.request(if goes_on { Request::Amend(command) } else { Request::Do(command) });
         }
         (Stage::Yarn, Tool::Grab) => {
-            if response.drag_started_by(PointerButton::Primary)
+            // Taken as soon as the pressed pointer is over yarn: it may have come down in a gap.
+            if response.is_pointer_button_down_on()
+                && ui.input(|i| i.pointer.primary_down())
                 && let Some((node, position)) = editor.nearest_node(hit.position.as_dvec3())
             {
                 let material = &editor.view.project.material;
