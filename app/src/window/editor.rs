@@ -280,7 +280,8 @@ impl Editor {
         self.faces = self.loop_faces();
     }
 
-    /// A quadrilateral over the nodes of every stitch, where the yarn is now: what the brush hits in the yarn.
+    /// A quadrilateral over every stitch, where the yarn is now: what the brush hits in the yarn. The nodes of a stitch span its
+    /// middle (see `stitch_mesh::lay`); the quadrilateral goes on to its edges, so that neighbours leave no gap.
     fn loop_faces(&self) -> Faces {
         let Some(fabric) = &self.view.project.fabric else { return Faces::default() };
         let state = self.yarn_state(fabric);
@@ -293,14 +294,20 @@ impl Editor {
         }
         let mut faces = Faces::default();
         for corners in corners {
-            // Nodes come as LL, LU, RU, RL; the outline runs LL, RL, RU, LU, half as large again to cover the stitch.
-            let outline: Vec<Vec3> = match corners[..] {
-                [ll, lu, .., ru, rl] => vec![ll, rl, ru, lu],
+            // Four nodes an operation, as LL, LU, RU, RL; a gathering stitch has others and is left as small as it is.
+            let outline = match corners[..] {
+                [ll, lu, .., ru, rl] => {
+                    let ops = (corners.len() / 4) as f32;
+                    let across = (rl - ll) / (1.0 - 0.4 / ops);
+                    let up = ((lu + ru) - (ll + rl)) / 2.0 / 0.4;
+                    let foot = (ll + rl) / 2.0 - 0.1 * up;
+                    let (left, right) = (foot - across / 2.0, foot + across / 2.0);
+                    vec![left, right, right + up, left + up]
+                }
                 _ => corners,
             };
-            let center = outline.iter().sum::<Vec3>() / outline.len().max(1) as f32;
             let first = faces.positions.len() as u32;
-            faces.positions.extend(outline.iter().map(|p| center + (*p - center) * 1.5));
+            faces.positions.extend(outline);
             let vertices = (first..faces.positions.len() as u32).collect();
             faces.polygons.push(render::Polygon { vertices, color: [0.0; 3] });
         }
