@@ -154,7 +154,7 @@ impl Command {
                 let size = StitchSize::of_width(width_mm * 1e-3);
                 let counts = EdgeCounts::from_size(&after.labelled, size)?;
                 let stitches = tessellate(&after.labelled, &counts)?;
-                if after.size != size {
+                if after.fabric.is_none() || after.size != size {
                     // Yarn as thick as the stitches came out: on short edges they are narrower than was asked for.
                     after.material = Material::for_loop_width(mean_width(&stitches));
                 }

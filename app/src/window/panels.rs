@@ -259,6 +259,7 @@ fn yarn(editor: &mut Editor, ui: &mut Ui) {
             editor.act(Command::SetScene { scene });
         }
     }
+    ui.separator();
     ui.heading("Material");
     let defaults = Material::for_loop_width(editor.project().size.width);
     let mut material = editor.panel.material.take().unwrap_or_else(|| editor.project().material.clone());
