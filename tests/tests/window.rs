@@ -305,6 +305,25 @@ fn painting_while_it_plays_keeps_it_playing() {
 }
 
 #[test]
+fn laying_anew_puts_the_yarn_back_and_undo_brings_it_again() {
+    let mut window = Window::new(knitted());
+    window.press("Yarn");
+    let laid = window.editor().project().fabric().unwrap().net.laid_state().position;
+    let moved = move |e: &Editor| {
+        let now = &e.yarn().unwrap().state.position;
+        laid.iter().zip(now).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+    };
+    window.key(Modifiers::NONE, Key::Space);
+    window.wait("moved", |e| e.yarn().is_some() && moved(e) > 1e-3);
+    window.key(Modifiers::NONE, Key::Space);
+    window.press("Lay anew");
+    // The simulation stirs what it is given by a thousandth of a millimetre.
+    window.wait("laid anew", |e| e.yarn().is_some() && moved(e) < 1e-5);
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.wait("undone", |e| e.yarn().is_some() && moved(e) > 1e-3);
+}
+
+#[test]
 fn what_cannot_be_done_is_said() {
     let mut window = Window::new(swatch());
     window.press("Save");

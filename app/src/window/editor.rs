@@ -14,7 +14,7 @@ use anyhow::Result;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use glam::{DVec3, Vec3};
 use render::{Bounds, Camera, Drawing, Faces, Lines, NamedView};
-use sim_core::{Pin, SimCommand, SimThread, Snapshot};
+use sim_core::{Material, Pin, Scene, SimCommand, SimThread, Snapshot};
 use std::path::PathBuf;
 use std::sync::Arc;
 use stitch_mesh::stitch::Stitch;
@@ -42,7 +42,10 @@ pub struct Editor {
     pub(super) grabbed: Option<Pin>,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     shown: Option<(u64, Stage)>,
+    /// The net that the simulation has, how often it had been placed, and material and scene.
     loaded: Option<Arc<YarnNet>>,
+    placed: u64,
+    simulated: Option<(Material, Scene)>,
     generation: u64,
     framed: bool,
     pub(super) error: Option<String>,
@@ -84,6 +87,8 @@ impl Editor {
             snapshot: None,
             shown: None,
             loaded: None,
+            placed: 0,
+            simulated: None,
             generation: 0,
             framed: false,
             error: None,
@@ -184,8 +189,10 @@ impl Editor {
             }
             self.error = view.message.clone().err();
             self.view = view;
+            self.load_yarn();
+        } else if self.shown.is_none() {
+            self.load_yarn(); // the first frame
         }
-        self.load_yarn();
         let snapshot = self.sim.latest().filter(|s| s.generation == self.generation);
         let is_new = match (&snapshot, &self.snapshot) {
             (Some(new), Some(old)) => !Arc::ptr_eq(new, old),
@@ -217,16 +224,10 @@ impl Editor {
             }
             return;
         };
-        let wants = (project.material.clone(), project.scene.clone(), fabric.state.is_none());
-        let same_net = self.loaded.as_ref().is_some_and(|net| Arc::ptr_eq(net, &fabric.net));
-        if same_net && self.panel.simulated.as_ref() == Some(&wants) {
-            return;
-        }
-        let reset = self.panel.simulated.as_ref().is_some_and(|had| !had.2 && wants.2);
-        if same_net && !reset {
-            self.sim.send(SimCommand::SetMaterial(wants.0.clone()));
-            self.sim.send(SimCommand::SetScene(wants.1.clone()));
-        } else {
+        let wants = (project.material.clone(), project.scene.clone());
+        let in_place = self.placed == self.view.placed
+            && self.loaded.as_ref().is_some_and(|net| Arc::ptr_eq(net, &fabric.net));
+        if !in_place {
             self.generation = self.sim.send(SimCommand::Load {
                 net: fabric.net.clone(),
                 material: wants.0.clone(),
@@ -234,11 +235,15 @@ impl Editor {
                 state: (*fabric.state()).clone(),
             });
             self.loaded = Some(fabric.net.clone());
+            self.placed = self.view.placed;
             if self.playing {
                 self.sim.send(SimCommand::Play);
             }
+        } else if self.simulated.as_ref() != Some(&wants) {
+            self.sim.send(SimCommand::SetMaterial(wants.0.clone()));
+            self.sim.send(SimCommand::SetScene(wants.1.clone()));
         }
-        self.panel.simulated = Some(wants);
+        self.simulated = Some(wants);
     }
 
     /// Puts the stage on the screen.

@@ -8,7 +8,7 @@ use crate::drawing::Stage;
 use crate::scenes;
 use egui::{RichText, Ui};
 use render::{NamedView, palette};
-use sim_core::{Material, Scene, SimCommand};
+use sim_core::{Material, SimCommand};
 use std::path::PathBuf;
 
 /// Charts on the palette.
@@ -36,8 +36,6 @@ pub struct State {
     pub width_mm: f64,
     /// Width over height of the viewport.
     pub aspect: f32,
-    /// Material, scene and whether the yarn is as laid, as the simulation last got them.
-    pub simulated: Option<(Material, Scene, bool)>,
     /// The yarn while a slider moves.
     pub material: Option<Material>,
 }
@@ -49,7 +47,6 @@ impl State {
             path: view.path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(),
             width_mm: 1e3 * view.project.size.width,
             aspect: 4.0 / 3.0,
-            simulated: None,
             material: None,
         }
     }

@@ -38,6 +38,9 @@ pub enum Request {
 pub struct View {
     /// Counts the changes.
     pub revision: u64,
+    /// Counts how often the document itself has put the yarn somewhere (laid it anew, or took that back); otherwise the
+    /// simulation knows best where it is.
+    pub placed: u64,
     /// The project.
     pub project: Project,
     /// Facts about it.
@@ -70,7 +73,7 @@ impl Session {
         wake: Box<dyn Fn() + Send>,
     ) -> std::io::Result<Self> {
         let (requests, received) = channel::<(Request, Option<Arc<YarnState>>)>();
-        let mut worker = Worker { document: Document::new(project), path, revision: 0 };
+        let mut worker = Worker { document: Document::new(project), path, revision: 0, placed: 0 };
         let latest = Arc::new(Mutex::new(Arc::new(worker.view(Ok(String::new())))));
         let waiting = Arc::new(AtomicUsize::new(0));
         let (slot, count) = (Arc::clone(&latest), Arc::clone(&waiting));
@@ -122,6 +125,7 @@ struct Worker {
     document: Document,
     path: Option<PathBuf>,
     revision: u64,
+    placed: u64,
 }
 
 impl Worker {
@@ -129,7 +133,14 @@ impl Worker {
         if let Some(yarn) = yarn {
             self.document.set_state(yarn, None);
         }
+        let places = match &request {
+            Request::Do(command) => Some(command),
+            Request::Undo => self.document.done().last(),
+            Request::Redo => self.document.next_redo(),
+            _ => None,
+        } == Some(&Command::ResetYarn);
         let message = self.try_to(request).map_err(|e| format!("{e:#}"));
+        self.placed += u64::from(places);
         self.revision += 1;
         self.view(message)
     }
@@ -179,6 +190,7 @@ impl Worker {
     fn view(&self, message: Result<String, String>) -> View {
         View {
             revision: self.revision,
+            placed: self.placed,
             project: self.document.project().clone(),
             facts: inspect(self.document.project()),
             path: self.path.clone(),
