@@ -2,6 +2,7 @@
 //! No GPU, no window, no iteration.
 
 pub mod autolabel;
+mod corners;
 pub mod edge_counts;
 pub mod fill;
 #[cfg(test)]

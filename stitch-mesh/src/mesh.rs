@@ -4,10 +4,10 @@
 //! from the front). A border edge has one half-edge, an inner edge two. Built once and never changed: an edit of the faces
 //! builds a new mesh, so the invariants checked by [`crate::validate`] hold for as long as the mesh lives.
 
+use crate::corners::Corners;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
-use crate::validate::{MeshProblem, area_vector, validate};
+use crate::validate::{MeshProblem, area_vector, place_problems, validate};
 use glam::DVec3;
-use std::collections::HashMap;
 use std::ops::Range;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,8 +29,8 @@ pub struct PolygonMesh {
     face_starts: Vec<u32>,
     /// Border half-edge that starts at a vertex, for border vertices.
     border_from: Vec<Option<HalfEdgeId>>,
-    /// Number of faces around every vertex.
-    valence: Vec<u32>,
+    /// The faces around every vertex.
+    corners: Corners,
 }
 
 /// A mesh that cannot be built, and why.
@@ -56,40 +56,47 @@ impl PolygonMesh {
         if !problems.is_empty() {
             return Err(MeshError(problems));
         }
-        let mut half_edges = Vec::new();
-        let mut edges: Vec<HalfEdgeId> = Vec::new();
-        let mut face_starts = vec![0];
-        let mut valence = vec![0; positions.len()];
-        let mut by_ends: HashMap<(u32, u32), HalfEdgeId> = HashMap::new();
+        let corners = Corners::new(positions.len(), faces);
+        let count = faces.iter().map(Vec::len).sum();
+        let mut half_edges: Vec<HalfEdge> = Vec::with_capacity(count);
+        let mut edges: Vec<HalfEdgeId> = Vec::with_capacity(count / 2);
+        let mut face_starts = Vec::with_capacity(faces.len() + 1);
+        face_starts.push(0);
+        let mut border_from = vec![None; positions.len()];
         for (face, vertices) in faces.iter().enumerate() {
             for (i, &a) in vertices.iter().enumerate() {
-                let b = vertices[(i + 1) % vertices.len()];
                 let this = HalfEdgeId::new(half_edges.len());
-                let twin = by_ends.get(&(b, a)).copied();
-                let edge = match twin {
-                    Some(twin) => {
-                        let other: &mut HalfEdge = &mut half_edges[twin.index()];
-                        other.twin = Some(this);
-                        other.edge
-                    }
+                let b = vertices[(i + 1) % vertices.len()];
+                let twin = corners.half_edge(b, a).map(HalfEdgeId);
+                // An edge is numbered when the first of its half-edges is met.
+                let edge = match twin.filter(|t| *t < this) {
+                    Some(twin) => half_edges[twin.index()].edge,
                     None => {
                         edges.push(this);
                         EdgeId::new(edges.len() - 1)
                     }
                 };
-                by_ends.insert((a, b), this);
+                if twin.is_none() {
+                    border_from[a as usize] = Some(this);
+                }
                 half_edges.push(HalfEdge { origin: VertexId(a), face: FaceId::new(face), twin, edge });
-                valence[a as usize] += 1;
             }
             face_starts.push(half_edges.len() as u32);
         }
-        let mut border_from = vec![None; positions.len()];
-        for (i, h) in half_edges.iter().enumerate() {
-            if h.twin.is_none() {
-                border_from[h.origin.index()] = Some(HalfEdgeId::new(i));
-            }
+        Ok(Self { positions, half_edges, edges, face_starts, border_from, corners })
+    }
+
+    /// The same mesh with its vertices elsewhere [m]; all ids survive.
+    ///
+    /// # Errors
+    /// Everything that [`validate`] finds.
+    pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, MeshError> {
+        let faces = self.face_lists();
+        if positions.len() != self.positions.len() {
+            return Self::new(positions, &faces);
         }
-        Ok(Self { positions, half_edges, edges, face_starts, border_from, valence })
+        let problems = place_problems(&positions, &faces);
+        if problems.is_empty() { Ok(Self { positions, ..self.clone() }) } else { Err(MeshError(problems)) }
     }
 
     /// Vertex positions, [vertex_count] [m].
@@ -215,10 +222,19 @@ impl PolygonMesh {
 
     /// The edge between two vertices.
     pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
-        self.edges().find(|&e| {
-            let ends = self.edge_ends(e);
-            ends == [a, b] || ends == [b, a]
-        })
+        let h = self.half_edge_between(a, b).or_else(|| self.half_edge_between(b, a))?;
+        Some(self.edge(h))
+    }
+
+    /// The half-edge that runs from one vertex to another.
+    pub fn half_edge_between(&self, from: VertexId, to: VertexId) -> Option<HalfEdgeId> {
+        let exists = from.index() < self.positions.len();
+        exists.then(|| self.corners.half_edge(from.0, to.0))?.map(HalfEdgeId)
+    }
+
+    /// The half-edges that start at a vertex, one for each face around it.
+    pub fn outgoing(&self, vertex: VertexId) -> impl ExactSizeIterator<Item = HalfEdgeId> + '_ {
+        self.corners.at(vertex.0).iter().map(|c| HalfEdgeId(c.half_edge))
     }
 
     /// Whether an edge lies on the border.
@@ -234,7 +250,7 @@ impl PolygonMesh {
 
     /// Number of faces around a vertex.
     pub fn valence(&self, vertex: VertexId) -> usize {
-        self.valence[vertex.index()] as usize
+        self.corners.at(vertex.0).len()
     }
 
     /// The border half-edge that follows a border half-edge; with the faces on the left, a border runs clockwise around its

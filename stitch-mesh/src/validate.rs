@@ -1,7 +1,9 @@
 //! What can be wrong with a polygon mesh, found before any structure is built on it.
 
+use crate::corners::Corners;
 use crate::ids::{FaceId, VertexId};
 use glam::DVec3;
+use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
 /// One thing wrong with a mesh, by face, edge or vertex (numbered from 0).
@@ -67,8 +69,6 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if faces.is_empty() {
         problems.push(MeshProblem::Empty);
     }
-    let not_finite = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
-    problems.extend(not_finite.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v))));
     for (f, vertices) in faces.iter().enumerate() {
         let face = FaceId::new(f);
         let missing = vertices.iter().find(|v| **v as usize >= positions.len());
@@ -79,15 +79,26 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if !problems.is_empty() {
         return problems; // what follows looks vertices up and measures them
     }
-    for (f, vertices) in faces.iter().enumerate() {
-        let face = FaceId::new(f);
-        if let Some(why) = degenerate(positions, vertices) {
-            problems.push(MeshProblem::DegenerateFace { face, why });
-        }
+    problems.extend(place_problems(positions, faces));
+    let corners = Corners::new(positions.len(), faces);
+    if corners.has_doubles() {
+        problems.extend(edge_problems(faces));
     }
-    problems.extend(edge_problems(faces));
     if problems.is_empty() {
-        problems = vertex_problems(positions.len(), faces);
+        problems = vertex_problems(positions.len(), &corners);
+    }
+    problems
+}
+
+/// What is wrong with where the vertices are: coordinates that are no numbers, faces without area.
+pub(crate) fn place_problems(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+    let mut problems = Vec::new();
+    let not_finite = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
+    problems.extend(not_finite.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v))));
+    for (f, vertices) in faces.iter().enumerate() {
+        if let Some(why) = degenerate(positions, vertices) {
+            problems.push(MeshProblem::DegenerateFace { face: FaceId::new(f), why });
+        }
     }
     problems
 }
@@ -96,12 +107,12 @@ fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
     if vertices.len() < 3 {
         return Some("it has fewer than three corners");
     }
-    let mut sorted = vertices.to_vec();
+    let mut sorted: SmallVec<[u32; 8]> = vertices.into();
     sorted.sort_unstable();
     if sorted.windows(2).any(|w| w[0] == w[1]) {
         return Some("it has a corner twice");
     }
-    let points: Vec<DVec3> = vertices.iter().map(|v| positions[*v as usize]).collect();
+    let points: SmallVec<[DVec3; 8]> = vertices.iter().map(|v| positions[*v as usize]).collect();
     let perimeter: f64 = (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum();
     // A face thinner than a millionth of its outline cannot hold a stitch.
     (area_vector(&points).length() <= 1e-6 * perimeter * perimeter).then_some("it has no area")
@@ -142,32 +153,25 @@ fn edge_problems(faces: &[Vec<u32>]) -> Vec<MeshProblem> {
 
 /// Isolated vertices and vertices with several fans. The edges are manifold already, so the faces around a vertex form
 /// chains: as many as there are corners less inner edges, or a single closed fan.
-fn vertex_problems(count: usize, faces: &[Vec<u32>]) -> Vec<MeshProblem> {
-    // Around each vertex, every corner joins the edge it comes in on with the edge it goes out on.
-    let mut corners: Vec<Vec<(u32, u32)>> = vec![Vec::new(); count];
-    for vertices in faces {
-        let n = vertices.len();
-        for i in 0..n {
-            corners[vertices[i] as usize].push((vertices[(i + n - 1) % n], vertices[(i + 1) % n]));
-        }
-    }
+fn vertex_problems(count: usize, corners: &Corners) -> Vec<MeshProblem> {
     let mut problems = Vec::new();
-    for (v, corners) in corners.iter().enumerate() {
-        let vertex = VertexId::new(v);
-        let Some(&first) = corners.first() else {
+    for vertex in (0..count).map(VertexId::new) {
+        let corners = corners.at(vertex.0);
+        let Some(first) = corners.first() else {
             problems.push(MeshProblem::IsolatedVertex(vertex));
             continue;
         };
-        // Walk both ways from the first corner; a single fan reaches all of them.
+        // Walk both ways from the first corner; a single fan reaches all of them. Around the vertex, every corner joins the
+        // edge it comes in on with the edge it goes out on.
         let mut reached = 1;
-        let mut at = first.0;
-        while let Some(c) = corners.iter().find(|c| c.1 == at).filter(|c| **c != first) {
-            (at, reached) = (c.0, reached + 1);
+        let mut at = first.before;
+        while let Some(c) = corners.iter().find(|c| c.after == at).filter(|c| *c != first) {
+            (at, reached) = (c.before, reached + 1);
         }
-        if at != first.1 || corners.len() == 1 {
-            at = first.1;
-            while let Some(c) = corners.iter().find(|c| c.0 == at) {
-                (at, reached) = (c.1, reached + 1);
+        if at != first.after || corners.len() == 1 {
+            at = first.after;
+            while let Some(c) = corners.iter().find(|c| c.before == at) {
+                (at, reached) = (c.after, reached + 1);
             }
         }
         if reached != corners.len() {
