@@ -2,7 +2,9 @@
 //! No GPU, no window, no iteration.
 
 pub mod autolabel;
+pub mod cable;
 mod corners;
+pub mod dye;
 pub mod edge_counts;
 pub mod fill;
 #[cfg(test)]
@@ -10,10 +12,12 @@ mod grid;
 pub mod ids;
 pub mod label;
 pub mod lay;
+pub mod marks;
 pub mod mean_value;
 pub mod mesh;
 pub mod obj;
 pub mod pieces;
+pub mod seam;
 pub mod stitch;
 pub mod stitch_mesh;
 pub mod tessellate;
