@@ -21,6 +21,7 @@ pub mod seam;
 pub mod stitch;
 pub mod stitch_mesh;
 pub mod tessellate;
+pub mod unravel;
 pub mod validate;
 pub mod yarn_curves;
 pub mod yarn_net;

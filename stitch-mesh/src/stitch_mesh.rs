@@ -226,6 +226,16 @@ impl StitchMesh {
         HalfEdgeId::new(self.right(face).index() + stitch.tops() + 1)
     }
 
+    /// The way up across a face: from the middle of its bottom side to the middle of its top side [m].
+    pub fn up(&self, face: FaceId) -> glam::DVec3 {
+        let middle = |a: HalfEdgeId, b: HalfEdgeId| {
+            0.5 * (self.mesh.position(self.mesh.origin(a)) + self.mesh.position(self.mesh.tip(b)))
+        };
+        let (left, right) = (self.left(face), self.right(face));
+        // The left wale edge runs down, the right one up.
+        middle(left, right) - middle(right, left)
+    }
+
     /// Whether a half-edge is a bottom of its face.
     pub fn is_bottom(&self, h: HalfEdgeId) -> bool {
         h < self.right(self.mesh.face(h))
