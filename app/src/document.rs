@@ -4,7 +4,11 @@ use crate::command::Command;
 use crate::project::Project;
 use anyhow::Result;
 use sim_core::Facts;
+use std::collections::HashSet;
+use std::hash::Hash;
 use std::sync::Arc;
+use stitch_mesh::edit::Survivors;
+use stitch_mesh::ids::FaceId;
 use stitch_mesh::yarn_net::YarnState;
 
 /// A project that is being edited. Needs no window.
@@ -20,6 +24,8 @@ pub struct Document {
 struct Step {
     command: Command,
     project: Project,
+    /// Which faces came through the command, if it has changed the faces of the stitch mesh.
+    survivors: Option<Arc<Survivors>>,
 }
 
 impl Document {
@@ -38,34 +44,57 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<()> {
-        let after = command.apply(&self.project)?;
+        let (after, survivors) = command.perform(&self.project)?;
         let before = std::mem::replace(&mut self.project, after);
-        self.done.push(Step { command, project: before });
+        self.done.push(Step { command, project: before, survivors: survivors.map(Arc::new) });
         self.undone.clear();
         Ok(())
     }
 
-    /// Does a command in place of the last one, as a brush does that has reached one more face: there is still one step to
-    /// undo.
+    /// Does a command as part of the last one, as a brush does that has reached one more face: there is still one step to
+    /// undo. A command that is not of the same kind is a step of its own.
     ///
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn amend(&mut self, command: Command) -> Result<()> {
-        let Some(last) = self.done.last_mut() else { return self.apply(command) };
-        self.project = command.apply(&self.project)?;
-        last.command = merge(&last.command, command);
-        self.undone.clear();
-        Ok(())
+        match self.done.last_mut().and_then(|last| Some((merge(&last.command, &command)?, last))) {
+            Some((merged, last)) => {
+                self.project = command.apply(&self.project)?;
+                last.command = merged;
+                self.undone.clear();
+                Ok(())
+            }
+            None => self.apply(command),
+        }
     }
 
     /// Takes back the last command. False if there is none.
     pub fn undo(&mut self) -> bool {
-        swap(&mut self.done, &mut self.undone, &mut self.project)
+        let Some(step) = self.done.pop() else { return false };
+        let was = step.survivors.as_ref().map(|s| s.faces.clone());
+        let step = self.swap(step, was.as_deref());
+        self.undone.push(step);
+        true
     }
 
     /// Does again what was taken back last. False if there is none.
     pub fn redo(&mut self) -> bool {
-        swap(&mut self.undone, &mut self.done, &mut self.project)
+        let Some(step) = self.undone.pop() else { return false };
+        let was = step.survivors.as_ref().map(|s| s.faces_before());
+        let step = self.swap(step, was.as_deref());
+        self.done.push(step);
+        true
+    }
+
+    /// Goes to the other side of a step. `was` tells which face of the project now each face there is.
+    fn swap(&mut self, step: Step, was: Option<&[Option<FaceId>]>) -> Step {
+        let Step { command, project: mut restored, survivors } = step;
+        // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
+        if command != Command::ResetYarn {
+            restored.keep_yarn_of(&self.project, was);
+        }
+        let project = std::mem::replace(&mut self.project, restored);
+        Step { command, project, survivors }
     }
 
     /// Commands done so far, oldest first.
@@ -91,29 +120,28 @@ impl Document {
     }
 }
 
-fn swap(from: &mut Vec<Step>, to: &mut Vec<Step>, project: &mut Project) -> bool {
-    let Some(Step { command, project: mut restored }) = from.pop() else { return false };
-    // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
-    if command != Command::ResetYarn {
-        restored.keep_yarn_of(project);
+/// One command that does what two of the same brush or slider did.
+fn merge(first: &Command, second: &Command) -> Option<Command> {
+    use Command::{Dye, LabelEdges, SetMaterial, SetScene, SetStitch};
+    match (first, second) {
+        (SetStitch { faces, stitch: a }, SetStitch { faces: more, stitch }) if a == stitch => {
+            Some(SetStitch { faces: union(faces, more), stitch: stitch.clone() })
+        }
+        (Dye { faces, color: a }, Dye { faces: more, color }) if a == color => {
+            Some(Dye { faces: union(faces, more), color: *color })
+        }
+        (LabelEdges { edges, label: a }, LabelEdges { edges: more, label }) if a == label => {
+            Some(LabelEdges { edges: union(edges, more), label: *label })
+        }
+        (SetMaterial { .. }, SetMaterial { .. }) | (SetScene { .. }, SetScene { .. }) => Some(second.clone()),
+        _ => None,
     }
-    let other_side = std::mem::replace(project, restored);
-    to.push(Step { command, project: other_side });
-    true
 }
 
-/// One command that does what two of the same brush did.
-fn merge(first: &Command, second: Command) -> Command {
-    match (first, second) {
-        (Command::SetStitch { faces, stitch: a }, Command::SetStitch { faces: more, stitch })
-            if *a == stitch =>
-        {
-            let mut faces = faces.clone();
-            faces.extend(more.iter().filter(|f| !faces.contains(f)).copied().collect::<Vec<_>>());
-            Command::SetStitch { faces, stitch }
-        }
-        (_, second) => second,
-    }
+/// What is in either list, in order of first mention.
+fn union<T: Copy + Eq + Hash>(first: &[T], second: &[T]) -> Vec<T> {
+    let mut seen = HashSet::new();
+    first.iter().chain(second).copied().filter(|x| seen.insert(*x)).collect()
 }
 
 #[cfg(test)]
@@ -184,8 +212,10 @@ mod tests {
     fn a_script_does_what_the_history_did() {
         let mut document = document();
         document.apply(Command::Autolabel).unwrap();
-        document.apply(Command::Tessellate { width_mm: 2.0 }).unwrap();
-        document.apply(Command::SetChart { chart: vec!["k p".into()], rows: Some([1, 2]) }).unwrap();
+        document.apply(Command::Tessellate { width_mm: Some(2.0) }).unwrap();
+        document
+            .apply(Command::SetChart { chart: vec!["k p".into()], rows: Some([1, 2]), faces: None })
+            .unwrap();
         let script = write_script(document.done()).unwrap();
         let mut again = Document::new(self::document().project().clone());
         for (_, command) in read_script(&script).unwrap() {

@@ -33,7 +33,7 @@ pub struct StitchMesh {
 }
 
 /// Where in the input mesh a stitch was cut from: when the input is cut again, a stitch in the same place keeps its type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Place {
     /// The face of the input mesh.
     pub face: FaceId,

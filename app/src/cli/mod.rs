@@ -291,7 +291,7 @@ fn new(mesh: &Path, unit: Unit, stitch_mm: f64, script: Option<&Path>) -> Result
         return Ok(project);
     }
     match project.labelled.problems().len() {
-        0 => Command::Tessellate { width_mm: stitch_mm }.apply(&project),
+        0 => Command::Tessellate { width_mm: Some(stitch_mm) }.apply(&project),
         _ => Ok(project), // the report says what could not be decided
     }
 }

@@ -202,7 +202,7 @@ fn labels(editor: &mut Editor, ui: &mut Ui) {
     let complete = editor.project().labelled.problems().is_empty();
     let button = ui.add_enabled(complete, egui::Button::new("Tessellate"));
     if button.on_disabled_hover_text("Every face needs a row first").clicked() {
-        editor.act(Command::Tessellate { width_mm: editor.panel.width_mm });
+        editor.act(Command::Tessellate { width_mm: Some(editor.panel.width_mm) });
         editor.go_to(Stage::Stitches);
     }
 }
@@ -232,7 +232,7 @@ fn palette_of(editor: &mut Editor, ui: &mut Ui) {
     for (name, chart) in CHARTS {
         if ui.button(name).clicked() {
             let chart = chart.iter().map(|line| (*line).to_owned()).collect();
-            editor.act(Command::SetChart { chart, rows: None });
+            editor.act(Command::SetChart { chart, rows: None, faces: None });
         }
     }
 }

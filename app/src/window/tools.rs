@@ -84,9 +84,9 @@ impl Tool {
                 Some(Command::FillFromCourse { edge })
             }
             Self::Fill => Some(Command::FillFromBorder { edge }),
-            Self::Course => Some(Command::LabelEdge { edge, label: Some(EdgeLabel::Course) }),
-            Self::Wale => Some(Command::LabelEdge { edge, label: Some(EdgeLabel::Wale) }),
-            Self::Erase => Some(Command::LabelEdge { edge, label: None }),
+            Self::Course => Some(Command::LabelEdges { edges: vec![edge], label: Some(EdgeLabel::Course) }),
+            Self::Wale => Some(Command::LabelEdges { edges: vec![edge], label: Some(EdgeLabel::Wale) }),
+            Self::Erase => Some(Command::LabelEdges { edges: vec![edge], label: None }),
             Self::Flip => Some(Command::FlipRow { face: face.0 }),
             Self::Paint(_) | Self::Grab => None,
         }
