@@ -15,6 +15,7 @@ pub mod obj;
 pub mod pieces;
 pub mod stitch;
 pub mod stitch_mesh;
+pub mod subdivide;
 pub mod tessellate;
 pub mod validate;
 pub mod yarn_curves;

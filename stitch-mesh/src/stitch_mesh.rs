@@ -14,6 +14,7 @@ use crate::ids::{FaceId, HalfEdgeId};
 use crate::label::Row;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
+use glam::DVec3;
 
 /// A mesh of stitches. See the module.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +116,14 @@ impl StitchMesh {
             return Err(StitchMeshError::NothingBelow { face, stitch: stitch.to_string() });
         }
         Ok(())
+    }
+
+    /// The same stitches with the vertices at other positions [m]. All ids survive.
+    ///
+    /// # Errors
+    /// As [`PolygonMesh::moved_to`].
+    pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, StitchMeshError> {
+        Ok(Self { mesh: self.mesh.moved_to(positions)?, stitches: self.stitches.clone() })
     }
 
     /// The mesh.

@@ -10,6 +10,14 @@ pub enum MeshProblem {
     /// There are no faces at all.
     #[error("the mesh has no faces")]
     Empty,
+    /// Positions for another number of vertices.
+    #[error("{given} positions for {vertices} vertices")]
+    PositionCount {
+        /// Positions given.
+        given: usize,
+        /// Vertices there are.
+        vertices: usize,
+    },
     /// A coordinate is not a finite number.
     #[error("vertex {0} has a coordinate that is not a finite number")]
     NotFinite(VertexId),
@@ -67,8 +75,7 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if faces.is_empty() {
         problems.push(MeshProblem::Empty);
     }
-    let not_finite = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
-    problems.extend(not_finite.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v))));
+    problems.extend(not_finite(positions));
     for (f, vertices) in faces.iter().enumerate() {
         let face = FaceId::new(f);
         let missing = vertices.iter().find(|v| **v as usize >= positions.len());
@@ -79,17 +86,30 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if !problems.is_empty() {
         return problems; // what follows looks vertices up and measures them
     }
-    for (f, vertices) in faces.iter().enumerate() {
-        let face = FaceId::new(f);
-        if let Some(why) = degenerate(positions, vertices) {
-            problems.push(MeshProblem::DegenerateFace { face, why });
-        }
-    }
+    problems.extend(degenerate_faces(positions, faces));
     problems.extend(edge_problems(faces));
     if problems.is_empty() {
         problems = vertex_problems(positions.len(), faces);
     }
     problems
+}
+
+/// What can be wrong with a mesh after its vertices have moved.
+pub(crate) fn position_problems(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+    let problems: Vec<MeshProblem> = not_finite(positions).collect();
+    if problems.is_empty() { degenerate_faces(positions, faces).collect() } else { problems }
+}
+
+fn not_finite(positions: &[DVec3]) -> impl Iterator<Item = MeshProblem> {
+    let vertices = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
+    vertices.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v)))
+}
+
+fn degenerate_faces(positions: &[DVec3], faces: &[Vec<u32>]) -> impl Iterator<Item = MeshProblem> {
+    faces.iter().enumerate().filter_map(|(f, vertices)| {
+        let why = degenerate(positions, vertices)?;
+        Some(MeshProblem::DegenerateFace { face: FaceId::new(f), why })
+    })
 }
 
 fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
