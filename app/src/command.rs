@@ -4,10 +4,13 @@
 //! Edges are named by their two vertices, faces by number, as the window and `inspect` show them, from 0.
 
 use crate::project::{Fabric, Project};
+use crate::relax::{mean_width, relax_mesh};
 use anyhow::{Context, Result, bail};
 use patterns::chart::Chart;
 use serde::{Deserialize, Serialize};
+use sim_core::mesh_relax::RelaxParams;
 use sim_core::{Material, Scene};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use stitch_mesh::autolabel::{autolabel, grow};
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
@@ -84,6 +87,30 @@ pub enum Command {
     },
     /// Puts the yarn back to where it was laid.
     ResetYarn,
+    /// Makes the stitches as even as they can be, and lays the yarn again.
+    RelaxMesh {
+        /// Height of a stitch over its width at rest.
+        #[serde(default = "default_aspect")]
+        aspect: f64,
+        /// How much of the surface the stitches fill at rest, above 0 and at most 1.
+        #[serde(default = "default_fill")]
+        fill: f64,
+        /// Whether they stay on the smooth surface of the input mesh, or find a shape of their own.
+        #[serde(default = "default_surface")]
+        surface: bool,
+    },
+}
+
+fn default_aspect() -> f64 {
+    RelaxParams::default().aspect
+}
+
+fn default_fill() -> f64 {
+    RelaxParams::default().fill
+}
+
+fn default_surface() -> bool {
+    true
 }
 
 impl Command {
@@ -106,6 +133,8 @@ impl Command {
             Self::SetMaterial { .. } => "Change yarn".into(),
             Self::SetScene { .. } => "Change scene".into(),
             Self::ResetYarn => "Lay yarn anew".into(),
+            Self::RelaxMesh { surface: true, .. } => "Relax stitches".into(),
+            Self::RelaxMesh { surface: false, .. } => "Relax stitches freely".into(),
         }
     }
 
@@ -196,17 +225,13 @@ impl Command {
                     fabric.facts = None;
                 }
             }
+            Self::RelaxMesh { aspect, fill, surface } => {
+                let params = RelaxParams { aspect: *aspect, fill: *fill, ..RelaxParams::default() };
+                after = relax_mesh(project, params, *surface, &mut |_, _| ControlFlow::Continue(()))?;
+            }
         }
         Ok(after)
     }
-}
-
-/// Mean width of a stitch along its course edges [m].
-fn mean_width(stitches: &StitchMesh) -> f64 {
-    let mesh = stitches.mesh();
-    let course = mesh.edges().filter(|e| !stitches.is_wale(mesh.edge_sides(*e).0));
-    let (sum, count) = course.fold((0.0, 0), |(sum, n), e| (sum + mesh.edge_length(e), n + 1));
-    sum / f64::from(count.max(1))
 }
 
 /// Changes labels. The fabric stays until it is tessellated anew, as it was made from labels that were complete.

@@ -24,7 +24,10 @@ impl Bvh {
     pub fn new<const N: usize>(count: usize, corners: impl Fn(usize) -> [DVec3; N]) -> Self {
         let bounds = |i: usize| {
             let corners = corners(i);
-            (corners.iter().fold(corners[0], |a, b| a.min(*b)), corners.iter().fold(corners[0], |a, b| a.max(*b)))
+            (
+                corners.iter().fold(corners[0], |a, b| a.min(*b)),
+                corners.iter().fold(corners[0], |a, b| a.max(*b)),
+            )
         };
         let boxes: Vec<(DVec3, DVec3)> = (0..count).map(bounds).collect();
         let mut tree = Self { nodes: Vec::new(), order: (0..count as u32).collect() };

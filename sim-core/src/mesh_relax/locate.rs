@@ -16,7 +16,8 @@ const ON: f64 = 1e-6;
 
 /// Places of the vertices of `mesh`, which are at `x`. Border vertices are placed on borders, corners on corners.
 pub(super) fn locate(surface: &Surface, mesh: &PolygonMesh, x: &[DVec3]) -> Vec<Place> {
-    let (low, high) = surface.flat.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
+    let (low, high) =
+        surface.flat.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
     let on = ON * low.distance(high);
     let (flat, far) = locate_on(surface, &surface.flat, mesh, x, on);
     if far <= on {
@@ -27,7 +28,13 @@ pub(super) fn locate(surface: &Surface, mesh: &PolygonMesh, x: &[DVec3]) -> Vec<
 }
 
 /// Places by nearest point on triangles and borders with these points, and the largest distance.
-fn locate_on(surface: &Surface, points: &[DVec3], mesh: &PolygonMesh, x: &[DVec3], on: f64) -> (Vec<Place>, f64) {
+fn locate_on(
+    surface: &Surface,
+    points: &[DVec3],
+    mesh: &PolygonMesh,
+    x: &[DVec3],
+    on: f64,
+) -> (Vec<Place>, f64) {
     let triangle = |t: usize| surface.triangles[t].map(|v| points[v as usize]);
     let triangles = Bvh::new(surface.triangles.len(), triangle);
     // Segments of all borders, without the steps from one border to the next.
@@ -52,7 +59,11 @@ fn locate_on(surface: &Surface, points: &[DVec3], mesh: &PolygonMesh, x: &[DVec3
                 let is_corner = surface.tangents[end as usize] == DVec3::ZERO
                     && mesh.valence(VertexId::new(v)) == 1
                     && points[point as usize].distance(*p) <= on.max(1e-9);
-                let place = if is_corner { Place::Corner { point } } else { Place::Border { border, segment: s, at } };
+                let place = if is_corner {
+                    Place::Corner { point }
+                } else {
+                    Place::Border { border, segment: s, at }
+                };
                 return (place, square.sqrt());
             }
         }

@@ -146,7 +146,8 @@ impl MeshRelaxation {
 
 /// The `count` faces with the largest strain, either way, the largest first.
 pub fn worst(strain: &[f64], count: usize) -> Vec<(FaceId, f64)> {
-    let mut faces: Vec<(FaceId, f64)> = strain.iter().enumerate().map(|(f, s)| (FaceId::new(f), *s)).collect();
+    let mut faces: Vec<(FaceId, f64)> =
+        strain.iter().enumerate().map(|(f, s)| (FaceId::new(f), *s)).collect();
     faces.sort_by(|(f, a), (g, b)| b.abs().total_cmp(&a.abs()).then(f.cmp(g)));
     faces.truncate(count);
     faces

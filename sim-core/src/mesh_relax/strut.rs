@@ -64,5 +64,11 @@ pub(super) fn expand(x @ [i, j, k]: [DVec3; 3], rest: f64) -> Expanded {
     let g = (straight - chord) / straight;
     let gradient = std::array::from_fn(|v| g * s[v] - 0.5 * g * g * r[v]);
     let pull = moving * (g - 0.5 * g * g).max(0.0);
-    Expanded { gradient, along: 1.0 / straight, s, across: edges.map(|edge| pull / edge.length().max(LEAST)), e }
+    Expanded {
+        gradient,
+        along: 1.0 / straight,
+        s,
+        across: edges.map(|edge| pull / edge.length().max(LEAST)),
+        e,
+    }
 }

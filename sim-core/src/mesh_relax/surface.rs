@@ -87,7 +87,11 @@ impl Surface {
             let tangent = |i: usize| {
                 let (before, after) = (at(i) - at(i + ring.len() - 1), at(i + 1) - at(i));
                 let smooth = before.normalize_or_zero() + after.normalize_or_zero();
-                if is_corner[ring[i % ring.len()] as usize] { DVec3::ZERO } else { smooth.normalize_or_zero() }
+                if is_corner[ring[i % ring.len()] as usize] {
+                    DVec3::ZERO
+                } else {
+                    smooth.normalize_or_zero()
+                }
             };
             tangents.extend((0..=ring.len()).map(tangent));
             border.extend(ring.iter().chain(ring.first()));
@@ -148,7 +152,8 @@ impl Surface {
                 let s = *segment as usize;
                 let [a, b] = self.segment(s);
                 let straight = (b - a).normalize_or_zero();
-                let end = |i: usize| if self.tangents[i] == DVec3::ZERO { straight } else { self.tangents[i] };
+                let end =
+                    |i: usize| if self.tangents[i] == DVec3::ZERO { straight } else { self.tangents[i] };
                 [end(s).lerp(end(s + 1), *at).normalize_or(straight), DVec3::ZERO]
             }
             Place::Corner { .. } => [DVec3::ZERO; 2],

@@ -86,7 +86,9 @@ impl<const D: usize> System<D> {
         let mut pairs: Vec<(u32, u32)> = (0..count as u32).map(|v| (v, v)).collect();
         pairs.extend(elements.springs.iter().flat_map(|s| both(s.ends)));
         let triples = || elements.corners.iter().chain(&elements.struts);
-        pairs.extend(triples().flat_map(|[i, j, k]| [[*i, *j], [*j, *k], [*i, *k]].into_iter().flat_map(both)));
+        pairs.extend(
+            triples().flat_map(|[i, j, k]| [[*i, *j], [*j, *k], [*i, *k]].into_iter().flat_map(both)),
+        );
         // Sorted by row and column, the own vertex in front.
         pairs.par_sort_unstable_by_key(|(v, w)| (*v, v != w, *w));
         pairs.dedup();
@@ -250,7 +252,8 @@ impl<const D: usize> Row<'_, D> {
         let (own, far) = (project(frame, direction), project(theirs, direction));
         for r in 0..D {
             for c in 0..D {
-                let spread = if across > 0.0 { [frame[r].dot(frame[c]), frame[r].dot(theirs[c])] } else { [0.0; 2] };
+                let spread =
+                    if across > 0.0 { [frame[r].dot(frame[c]), frame[r].dot(theirs[c])] } else { [0.0; 2] };
                 row[0][r][c] += across * spread[0] + (along - across) * own[r] * own[c];
                 row[block][r][c] -= across * spread[1] + (along - across) * own[r] * far[c];
             }

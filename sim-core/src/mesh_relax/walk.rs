@@ -35,7 +35,8 @@ impl Surface {
             let corners = self.corners(triangle as usize);
             let Some(rate) = barycentric(corners, way) else { break };
             // The side opposite to corner i is met when its coordinate runs out.
-            let meets = |i: usize| if rate[i] < 0.0 && entered != Some(i) { at[i] / -rate[i] } else { f64::INFINITY };
+            let meets =
+                |i: usize| if rate[i] < 0.0 && entered != Some(i) { at[i] / -rate[i] } else { f64::INFINITY };
             let first = (0..3).min_by(|i, j| meets(*i).total_cmp(&meets(*j))).unwrap_or(0);
             let met = meets(first);
             let part = met.clamp(0.0, 1.0);
@@ -51,10 +52,19 @@ impl Surface {
             if next == NONE {
                 break;
             }
-            let (p, q) = (self.triangles[triangle as usize][side], self.triangles[triangle as usize][(side + 1) % 3]);
+            let (p, q) =
+                (self.triangles[triangle as usize][side], self.triangles[triangle as usize][(side + 1) % 3]);
             let theirs = self.triangles[next as usize];
             let Some(opposite) = (0..3).find(|i| theirs[*i] != p && theirs[*i] != q) else { break };
-            let weight = |v: u32| if v == p { at[side] } else if v == q { at[(side + 1) % 3] } else { 0.0 };
+            let weight = |v: u32| {
+                if v == p {
+                    at[side]
+                } else if v == q {
+                    at[(side + 1) % 3]
+                } else {
+                    0.0
+                }
+            };
             let edge = (self.points[q as usize] - self.points[p as usize]).normalize_or_zero();
             let along = way.dot(edge);
             let inwards = self.points[theirs[opposite] as usize] - self.points[p as usize];
