@@ -3,6 +3,7 @@
 mod bvh;
 mod conjugate;
 mod elements;
+mod fold;
 mod locate;
 mod params;
 mod relaxer;

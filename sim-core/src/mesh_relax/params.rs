@@ -21,6 +21,9 @@ pub struct RelaxParams {
     pub shear: f64,
     /// κ_wale, the stiffness of wales against bending.
     pub wale: f64,
+    /// κ_fold, the stiffness of corners against being folded over, on a surface only. Not in the paper; with 0 crowns of hats
+    /// fold, from 0.05 on they do not.
+    pub fold: f64,
     /// The relaxation is settled when an unshortened step moves no vertex further than this [stitches].
     pub tolerance: f64,
     /// It ends after so many steps in any case.
@@ -35,6 +38,7 @@ impl Default for RelaxParams {
             stretch: 2.0,
             shear: 0.2,
             wale: 2.0,
+            fold: 0.2,
             tolerance: 0.02,
             most_steps: 200,
         }
@@ -74,6 +78,7 @@ impl RelaxParams {
             ("the stiffness of stretch", self.stretch, 1e-6..=1e6, "between 1e-6 and 1e6"),
             ("the stiffness of shear", self.shear, 0.0..=1e6, "between 0 and 1e6"),
             ("the stiffness of wales", self.wale, 0.0..=1e6, "between 0 and 1e6"),
+            ("the stiffness of folding", self.fold, 0.0..=1e6, "between 0 and 1e6"),
             ("the tolerance", self.tolerance, 1e-9..=1.0, "between 1e-9 and 1 stitch"),
         ];
         match checks.into_iter().find(|(_, value, allowed, _)| !allowed.contains(value)) {

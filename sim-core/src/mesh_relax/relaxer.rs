@@ -63,6 +63,8 @@ pub struct StepFacts {
 pub(super) trait Domain<const D: usize>: Sync {
     type Place: Copy + Send + Sync;
     fn frame(&self, place: &Self::Place) -> Frame<D>;
+    /// The front, zero where there is none.
+    fn normal(&self, place: &Self::Place) -> DVec3;
     fn walk(&self, place: &Self::Place, way: DVec3) -> Self::Place;
     fn position(&self, place: &Self::Place) -> DVec3;
 }
@@ -75,6 +77,10 @@ impl Domain<3> for Space {
 
     fn frame(&self, _: &DVec3) -> Frame<3> {
         DVec3::AXES
+    }
+
+    fn normal(&self, _: &DVec3) -> DVec3 {
+        DVec3::ZERO
     }
 
     fn walk(&self, place: &DVec3, way: DVec3) -> DVec3 {
@@ -93,6 +99,10 @@ impl Domain<2> for Surface {
         Surface::frame(self, place)
     }
 
+    fn normal(&self, place: &Place) -> DVec3 {
+        Surface::normal(self, place)
+    }
+
     fn walk(&self, place: &Place, way: DVec3) -> Place {
         Surface::walk(self, place, way)
     }
@@ -104,9 +114,10 @@ impl Domain<2> for Surface {
 
 /// A relaxation under way. Lengths in stitches.
 pub(super) struct Relaxer<const D: usize, M: Domain<D>> {
-    domain: M,
-    places: Vec<M::Place>,
+    pub domain: M,
+    pub places: Vec<M::Place>,
     pub x: Vec<DVec3>,
+    normals: Vec<DVec3>,
     frames: Vec<Frame<D>>,
     elements: Elements,
     params: RelaxParams,
@@ -129,8 +140,10 @@ impl<const D: usize, M: Domain<D>> Relaxer<D, M> {
     ) -> Self {
         let x: Vec<DVec3> = places.iter().map(|p| domain.position(p)).collect();
         let system = System::new(x.len(), &elements, &params, rest_wale);
-        let energy = energy(&elements, &params, rest_wale, &x);
+        let normals: Vec<DVec3> = places.iter().map(|p| domain.normal(p)).collect();
+        let energy = energy(&elements, &params, rest_wale, &x, &normals);
         Self {
+            normals,
             frames: vec![[DVec3::ZERO; D]; x.len()],
             solver: Conjugate::new(x.len()),
             settled: !energy.is_finite(), // coordinates beyond all measure: nothing can be made of them
@@ -154,7 +167,7 @@ impl<const D: usize, M: Domain<D>> Relaxer<D, M> {
         self.steps += 1;
         let domain = &self.domain;
         self.places.par_iter().map(|p| domain.frame(p)).collect_into_vec(&mut self.frames);
-        self.system.assemble(&self.x, &self.frames, 1.0 / self.h);
+        self.system.assemble(&self.x, &self.frames, &self.normals, 1.0 / self.h);
         let iterations = self.solver.solve(&self.system, SOLVED, MOST_ITERATIONS);
 
         let way =
@@ -174,9 +187,10 @@ impl<const D: usize, M: Domain<D>> Relaxer<D, M> {
                 .map(|v| domain.walk(&self.places[v], part * way(v)))
                 .collect();
             let x: Vec<DVec3> = places.par_iter().map(|p| domain.position(p)).collect();
-            let energy = energy(&self.elements, &self.params, self.rest_wale, &x);
+            let normals: Vec<DVec3> = places.par_iter().map(|p| domain.normal(p)).collect();
+            let energy = energy(&self.elements, &self.params, self.rest_wale, &x, &normals);
             if energy <= self.energy - KEPT * part * promised {
-                (self.places, self.x, self.energy) = (places, x, energy);
+                (self.places, self.x, self.normals, self.energy) = (places, x, normals, energy);
                 moved = part * longest;
                 break;
             }

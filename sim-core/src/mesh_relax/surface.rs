@@ -139,13 +139,27 @@ impl Surface {
         }
     }
 
+    /// The unit normal at a place.
+    pub fn normal(&self, place: &Place) -> DVec3 {
+        let normal = |point: u32| self.normals[point as usize];
+        match place {
+            Place::Inside { triangle, at } => {
+                let [a, b, c] = self.triangles[*triangle as usize].map(normal);
+                (at[0] * a + at[1] * b + at[2] * c).normalize_or(a)
+            }
+            Place::Border { segment, at, .. } => {
+                let [a, b] = [0, 1].map(|i| normal(self.border[*segment as usize + i]));
+                a.lerp(b, *at).normalize_or(a)
+            }
+            Place::Corner { point } => normal(*point),
+        }
+    }
+
     /// Directions in which a vertex at a place may move: two in the tangent plane, one along a border, none at a corner.
     pub fn frame(&self, place: &Place) -> [DVec3; 2] {
         match place {
-            Place::Inside { triangle, at } => {
-                let [a, b, c] = self.triangles[*triangle as usize].map(|v| self.normals[v as usize]);
-                let normal = (at[0] * a + at[1] * b + at[2] * c).normalize_or(a);
-                let (u, v) = normal.any_orthonormal_pair();
+            Place::Inside { .. } => {
+                let (u, v) = self.normal(place).any_orthonormal_pair();
                 [u, v]
             }
             Place::Border { segment, at, .. } => {

@@ -11,7 +11,7 @@
 
 use super::elements::Elements;
 use super::params::RelaxParams;
-use super::{shear, stretch, strut};
+use super::{fold, shear, stretch, strut};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -74,9 +74,7 @@ pub(super) struct System<const D: usize> {
     inverse: Vec<Block<D>>,
     /// −∇V in the frames, [vertex_count].
     pub force: Vec<Small<D>>,
-    stretch: f64,
-    shear: f64,
-    wale: f64,
+    params: RelaxParams,
     rest_wale: f64,
 }
 
@@ -115,15 +113,13 @@ impl<const D: usize> System<D> {
             inverse: vec![[[0.0; D]; D]; count],
             force: vec![[0.0; D]; count],
             columns,
-            stretch: params.stretch,
-            shear: params.shear,
-            wale: params.wale,
+            params: *params,
             rest_wale,
         }
     }
 
     /// Works out the force and the matrix I/h + K at positions `x`.
-    pub fn assemble(&mut self, x: &[DVec3], frames: &[Frame<D>], over_h: f64) {
+    pub fn assemble(&mut self, x: &[DVec3], frames: &[Frame<D>], normals: &[DVec3], over_h: f64) {
         let mut rows: Vec<&mut [Block<D>]> = Vec::with_capacity(x.len());
         let mut rest = &mut self.values[..];
         for v in 0..x.len() {
@@ -134,11 +130,12 @@ impl<const D: usize> System<D> {
         let at = Row {
             x,
             frames,
+            normals,
             springs: &self.springs,
             corners: &self.corners,
             struts: &self.struts,
             start: &self.columns.start,
-            weights: [self.stretch, self.shear, self.wale],
+            params: &self.params,
             rest_wale: self.rest_wale,
         };
         let outputs = (rows, &mut self.force, &mut self.inverse);
@@ -186,18 +183,19 @@ impl<const D: usize> System<D> {
 struct Row<'a, const D: usize> {
     x: &'a [DVec3],
     frames: &'a [Frame<D>],
+    normals: &'a [DVec3],
     springs: &'a Lists<SpringAt>,
     corners: &'a Lists<TripleAt>,
     struts: &'a Lists<TripleAt>,
     start: &'a [u32],
-    weights: [f64; 3],
+    params: &'a RelaxParams,
     rest_wale: f64,
 }
 
 impl<const D: usize> Row<'_, D> {
     /// The force on a vertex and its row of K.
     fn fill(&self, v: usize, row: &mut [Block<D>], force: &mut Small<D>) {
-        let [stretch, shear, wale] = self.weights;
+        let RelaxParams { stretch, shear, wale, fold, .. } = *self.params;
         let (frame, first) = (&self.frames[v], self.start[v]);
         row.fill([[0.0; D]; D]);
         let mut gradient = DVec3::ZERO;
@@ -209,11 +207,19 @@ impl<const D: usize> Row<'_, D> {
             self.line(frame, *other, e.direction, [along, across], row, (block - first) as usize);
         }
         for TripleAt { vertices, blocks, role } in self.corners.of(v) {
-            let (c, g) = shear::expand(vertices.map(|w| self.x[w as usize]));
+            let at = vertices.map(|w| self.x[w as usize]);
+            let (c, g) = shear::expand(at);
             gradient += 0.5 * shear * c * g[*role];
             let own = project(frame, g[*role] * (0.5 * shear));
             for (w, (b, g)) in vertices.iter().zip(blocks.iter().zip(&g)) {
                 add_outer(&mut row[(b - first) as usize], &own, &project(&self.frames[*w as usize], *g));
+            }
+            if let Some((slope, curvature, g)) = fold::expand(at, self.normals[vertices[1] as usize]) {
+                gradient += fold * slope * g[*role];
+                let own = project(frame, g[*role] * (fold * curvature));
+                for (w, (b, g)) in vertices.iter().zip(blocks.iter().zip(&g)) {
+                    add_outer(&mut row[(b - first) as usize], &own, &project(&self.frames[*w as usize], *g));
+                }
             }
         }
         for TripleAt { vertices, blocks, role } in self.struts.of(v) {
@@ -293,19 +299,30 @@ fn inverted<const D: usize>(block: &Block<D>) -> Block<D> {
     inverse
 }
 
-/// V at positions `x`: springs, corners and struts of `elements`.
-pub(super) fn energy(elements: &Elements, params: &RelaxParams, rest_wale: f64, x: &[DVec3]) -> f64 {
-    let at = |v: &u32| x[*v as usize];
-    let sum = |parts: Vec<f64>| parts.iter().sum::<f64>();
-    let triple = |t: &[u32; 3]| [at(&t[0]), at(&t[1]), at(&t[2])];
-    let springs = elements.springs.par_chunks(CHUNK).map(|chunk| {
-        chunk.iter().map(|s| stretch::energy(at(&s.ends[0]) - at(&s.ends[1]), s.rest)).sum::<f64>()
+/// V at positions `x` with these normals: springs, corners and struts of `elements`.
+pub(super) fn energy(
+    elements: &Elements,
+    params: &RelaxParams,
+    rest_wale: f64,
+    x: &[DVec3],
+    normals: &[DVec3],
+) -> f64 {
+    let RelaxParams { stretch, shear, wale, fold, .. } = *params;
+    let at = |v: u32| x[v as usize];
+    let springs = in_chunks(&elements.springs, |s| {
+        let [a, b] = s.ends.map(at);
+        stretch * stretch::energy(a - b, s.rest)
     });
-    let corners = elements.corners.par_chunks(CHUNK);
-    let corners = corners.map(|chunk| chunk.iter().map(|t| shear::energy(triple(t))).sum::<f64>());
-    let struts = elements.struts.par_chunks(CHUNK);
-    let struts = struts.map(|chunk| chunk.iter().map(|t| strut::energy(triple(t), rest_wale)).sum::<f64>());
-    params.stretch * sum(springs.collect())
-        + params.shear * sum(corners.collect())
-        + params.wale * sum(struts.collect())
+    let corners = in_chunks(&elements.corners, |t| {
+        let points = t.map(at);
+        shear * shear::energy(points) + fold * fold::energy(points, normals[t[1] as usize])
+    });
+    let struts = in_chunks(&elements.struts, |t| wale * strut::energy(t.map(at), rest_wale));
+    springs + corners + struts
+}
+
+/// A sum whose bits do not depend on the number of threads.
+fn in_chunks<T: Sync>(items: &[T], of: impl Fn(&T) -> f64 + Sync) -> f64 {
+    let parts = items.par_chunks(CHUNK).map(|chunk| chunk.iter().map(&of).sum::<f64>());
+    parts.collect::<Vec<f64>>().iter().sum()
 }

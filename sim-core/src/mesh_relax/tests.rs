@@ -25,5 +25,22 @@ fn spike() {
         println!("{:?} {f:?}", start.elapsed());
         ControlFlow::Continue(())
     });
+    let end = r.stitches().unwrap();
+    let How::OnSurface(inner) = &r.how else { panic!() };
+    let folded = end
+        .mesh()
+        .faces()
+        .flat_map(|f| elements::sub_quads(&end, f))
+        .filter(|q| {
+            let p = q.map(|v| inner.x[v as usize]);
+            (0..4).any(|k| {
+                let (a, j, b) = (p[(k + 3) % 4], p[k], p[(k + 1) % 4]);
+                use relaxer::Domain as _;
+                let n = inner.domain.normal(&inner.places[q[k] as usize]);
+                n.dot((b - j).cross(a - j)) <= 0.0
+            })
+        })
+        .count();
+    println!("strain folded sub-quads {folded}");
     println!("strain after: rms {:.4} worst {:?}", rms(&r.strain()), r.worst(3));
 }
