@@ -23,6 +23,7 @@ mod region;
 pub mod seam;
 pub mod stitch;
 pub mod stitch_mesh;
+pub mod subdivide;
 pub mod tessellate;
 pub mod unravel;
 pub mod validate;

@@ -19,6 +19,7 @@ use crate::label::Row;
 use crate::marks::Marks;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// A mesh of stitches. See the module.
@@ -145,6 +146,14 @@ impl StitchMesh {
         Ok(())
     }
 
+    /// The same stitches with the vertices at other positions [m]. All ids survive.
+    ///
+    /// # Errors
+    /// As [`PolygonMesh::moved_to`].
+    pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, StitchMeshError> {
+        Ok(Self { mesh: self.mesh.moved_to(positions)?, ..self.clone() })
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &PolygonMesh {
         &self.mesh
@@ -195,14 +204,6 @@ impl StitchMesh {
         &self.places
     }
 
-    /// The same stitches on a mesh with its vertices elsewhere [m]; all ids survive.
-    ///
-    /// # Errors
-    /// A face that would have no area.
-    pub fn moved_to(&self, positions: Vec<glam::DVec3>) -> Result<Self, MeshError> {
-        Ok(Self { mesh: self.mesh.moved_to(positions)?, ..self.clone() })
-    }
-
     /// Bottom half-edges of a face, left to right.
     pub fn bottoms(&self, face: FaceId) -> impl ExactSizeIterator<Item = HalfEdgeId> + use<> {
         self.mesh.face_half_edges(face).take(self.stitch(face).bottoms())
@@ -227,7 +228,7 @@ impl StitchMesh {
     }
 
     /// The way up across a face: from the middle of its bottom side to the middle of its top side [m].
-    pub fn up(&self, face: FaceId) -> glam::DVec3 {
+    pub fn up(&self, face: FaceId) -> DVec3 {
         let middle = |a: HalfEdgeId, b: HalfEdgeId| {
             0.5 * (self.mesh.position(self.mesh.origin(a)) + self.mesh.position(self.mesh.tip(b)))
         };
