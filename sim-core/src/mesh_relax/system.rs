@@ -345,7 +345,7 @@ mod tests {
     }
 
     /// A crumpled tube, with all forces at work.
-    fn case() -> Case {
+    fn case(fold: f64) -> Case {
         let piece = tube(9, 6, StitchSize::of_width(1e-3)).unwrap();
         let rest = RestLengths { course: 1.1e-3, wale: 0.8e-3 };
         let elements = Elements::new(&piece, &rest);
@@ -354,7 +354,7 @@ mod tests {
             *p / rest.unit() + DVec3::new(noise(3 * v), noise(3 * v + 1), noise(3 * v + 2))
         };
         let x: Vec<DVec3> = piece.mesh().positions().iter().enumerate().map(crumpled).collect();
-        let params = RelaxParams { stretch: 1.3, shear: 0.7, wale: 1.9, fold: 0.4, ..RelaxParams::default() };
+        let params = RelaxParams { stretch: 1.3, shear: 0.7, wale: 1.9, fold, ..RelaxParams::default() };
         let wale = rest.wale / rest.unit();
         let mut system = System::<3>::new(x.len(), &elements, &params, wale);
         let normals = piece.mesh().vertex_normals();
@@ -373,7 +373,7 @@ mod tests {
 
     #[test]
     fn the_assembled_force_is_the_slope_of_the_energy() {
-        let Case { elements, system, x, normals, params, wale } = case();
+        let Case { elements, system, x, normals, params, wale } = case(0.4);
         let way = direction(x.len(), 7);
         let energy_at = |t: f64| {
             let moved: Vec<DVec3> = x.iter().zip(&way).map(|(x, w)| *x + t * DVec3::from_array(*w)).collect();
@@ -387,17 +387,18 @@ mod tests {
 
     #[test]
     fn forces_balance() {
-        let Case { system, x, .. } = case();
+        let Case { system, x, .. } = case(0.0);
         let force = |v: usize| DVec3::from_array(system.force[v]);
         let (sum, turn) = (0..x.len())
             .fold((DVec3::ZERO, DVec3::ZERO), |(s, t), v| (s + force(v), t + x[v].cross(force(v))));
         assert!(sum.length() < 1e-11 && force(0).length() > 0.1, "{sum}");
-        assert!(turn.length() < 0.2, "folding holds its normals fast, so it alone turns: {turn}");
+        // Folding holds its normals fast and so is left out: it alone turns things.
+        assert!(turn.length() < 1e-11, "{turn}");
     }
 
     #[test]
     fn the_matrix_is_symmetric_and_positive_definite() {
-        let Case { system, x, .. } = case();
+        let Case { system, x, .. } = case(0.4);
         let (a, b) = (direction(x.len(), 100), direction(x.len(), 9000));
         let (mut ka, mut kb) = (a.clone(), a.clone());
         assert!(system.product(&a, &mut ka) > 0.0 && system.product(&b, &mut kb) > 0.0);
