@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `project` | what a project is, and its file |
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
-//! | `inspect`, `scenes`, `drawing`, `export`, `bundled` | facts, named scenes, pictures and curves of a project, and the one that comes with the program |
+//! | `inspect`, `preview`, `scenes`, `drawing`, `export`, `bundled` | facts, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program |
 //! | `cli` | the command line |
 //! | `window` | the same document with a mouse |
 
@@ -16,6 +16,7 @@ pub mod drawing;
 pub mod export;
 pub mod files;
 pub mod inspect;
+pub mod preview;
 pub mod project;
 pub mod scenes;
 pub mod window;
