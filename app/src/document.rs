@@ -15,11 +15,20 @@ pub struct Document {
     undone: Vec<Step>,
 }
 
-/// A command and the project on its other side: before it when done, after it when undone.
+/// Commands that are done and undone together, never none, and the project on their other side: before them when done, after
+/// them when undone.
 #[derive(Clone, Debug)]
 struct Step {
-    command: Command,
+    commands: Vec<Command>,
     project: Project,
+}
+
+impl Step {
+    fn name(&self) -> String {
+        let more = self.commands.len() - 1;
+        let first = self.commands.first().map(Command::name).unwrap_or_default();
+        if more == 0 { first } else { format!("{first} and {more} more") }
+    }
 }
 
 impl Document {
@@ -39,23 +48,35 @@ impl Document {
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<()> {
         let after = command.apply(&self.project)?;
-        let before = std::mem::replace(&mut self.project, after);
-        self.done.push(Step { command, project: before });
-        self.undone.clear();
+        self.keep(command, after, false);
         Ok(())
     }
 
-    /// Does a command in place of the last one, as a brush does that has reached one more face: there is still one step to
+    /// Does a command as part of the last step, as a brush does that has reached one more face: there is still one step to
     /// undo.
     ///
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn amend(&mut self, command: Command) -> Result<()> {
-        let Some(last) = self.done.last_mut() else { return self.apply(command) };
-        self.project = command.apply(&self.project)?;
-        last.command = merge(&last.command, command);
-        self.undone.clear();
+        let after = command.apply(&self.project)?;
+        self.keep(command, after, true);
         Ok(())
+    }
+
+    /// Takes over what a command has made of the project, worked out elsewhere; as a step of its own or as part of the last.
+    pub fn keep(&mut self, command: Command, after: Project, amends: bool) {
+        let before = std::mem::replace(&mut self.project, after);
+        self.undone.clear();
+        match self.done.last_mut().filter(|_| amends) {
+            Some(step) => match step.commands.last_mut().and_then(|last| merge(last, &command)) {
+                Some(both) => {
+                    step.commands.pop();
+                    step.commands.push(both);
+                }
+                None => step.commands.push(command),
+            },
+            None => self.done.push(Step { commands: vec![command], project: before }),
+        }
     }
 
     /// Takes back the last command. False if there is none.
@@ -69,13 +90,18 @@ impl Document {
     }
 
     /// Commands done so far, oldest first.
-    pub fn done(&self) -> impl ExactSizeIterator<Item = &Command> {
-        self.done.iter().map(|s| &s.command)
+    pub fn done(&self) -> impl Iterator<Item = &Command> {
+        self.done.iter().flat_map(|s| &s.commands)
     }
 
-    /// The command that [`Self::redo`] would do.
-    pub fn next_redo(&self) -> Option<&Command> {
-        self.undone.last().map(|s| &s.command)
+    /// Names of the steps done, oldest first.
+    pub fn steps(&self) -> impl ExactSizeIterator<Item = String> {
+        self.done.iter().map(Step::name)
+    }
+
+    /// Names of the steps that were taken back, the one that [`Self::redo`] would do first.
+    pub fn undone(&self) -> impl ExactSizeIterator<Item = String> {
+        self.undone.iter().rev().map(Step::name)
     }
 
     /// Takes over where the simulation has brought the yarn. No step of the history: time is not undone, edits are. A state
@@ -92,27 +118,27 @@ impl Document {
 }
 
 fn swap(from: &mut Vec<Step>, to: &mut Vec<Step>, project: &mut Project) -> bool {
-    let Some(Step { command, project: mut restored }) = from.pop() else { return false };
+    let Some(Step { commands, project: mut restored }) = from.pop() else { return false };
     // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
-    if command != Command::ResetYarn {
+    if !commands.contains(&Command::ResetYarn) {
         restored.keep_yarn_of(project);
     }
     let other_side = std::mem::replace(project, restored);
-    to.push(Step { command, project: other_side });
+    to.push(Step { commands, project: other_side });
     true
 }
 
 /// One command that does what two of the same brush did.
-fn merge(first: &Command, second: Command) -> Command {
+fn merge(first: &Command, second: &Command) -> Option<Command> {
     match (first, second) {
         (Command::SetStitch { faces, stitch: a }, Command::SetStitch { faces: more, stitch })
-            if *a == stitch =>
+            if a == stitch =>
         {
             let mut faces = faces.clone();
             faces.extend(more.iter().filter(|f| !faces.contains(f)).copied().collect::<Vec<_>>());
-            Command::SetStitch { faces, stitch }
+            Some(Command::SetStitch { faces, stitch: stitch.clone() })
         }
-        (_, second) => second,
+        _ => None,
     }
 }
 
@@ -169,12 +195,27 @@ mod tests {
     }
 
     #[test]
+    fn commands_of_one_step_stay_in_the_script_and_are_undone_together() {
+        let mut document = document();
+        let set =
+            |face, symbol: &str| Command::SetStitch { faces: vec![face], stitch: symbol.parse().unwrap() };
+        document.apply(set(3, "k1")).unwrap();
+        document.amend(set(4, "p")).unwrap();
+        assert_eq!(document.steps().collect::<Vec<_>>(), ["Set 1 stitch to k1 and 1 more"]);
+        assert_eq!(document.done().count(), 2);
+        assert!(document.undo() && !document.undo());
+        assert_eq!((purls(&document), document.undone().len()), (0, 1));
+        assert!(document.redo());
+        assert_eq!(purls(&document), 1);
+    }
+
+    #[test]
     fn a_failed_command_changes_nothing() {
         let mut document = document();
         let error =
             document.apply(Command::SetStitch { faces: vec![0, 99], stitch: Stitch::purl() }).unwrap_err();
         assert_eq!(error.to_string(), "there is no face 99: the faces are 0–23");
-        assert_eq!((purls(&document), document.done().len()), (0, 0));
+        assert_eq!((purls(&document), document.done().count()), (0, 0));
         assert!(
             document.apply(Command::SetStitch { faces: vec![0], stitch: "kp".parse().unwrap() }).is_err()
         );

@@ -1,3 +1,4 @@
 //! Stitch patterns: charts of stitches, and laying them over a stitch mesh.
 
+pub mod alternation;
 pub mod chart;

@@ -7,6 +7,8 @@
     reason = "helpers of tests are tests, which clippy cannot see"
 )]
 
+pub mod window;
+
 use render::Gpu;
 use serde_json::Value;
 use std::io::Write as _;

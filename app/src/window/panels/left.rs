@@ -1,0 +1,107 @@
+//! Tools and what they work with, stage by stage.
+
+use super::{palette, patterns, yarn};
+use crate::drawing::Stage;
+use crate::window::actions::{button, button_as};
+use crate::window::editor::Editor;
+use crate::window::pointer::Tool;
+use crate::window::selection::Mode;
+use egui::Ui;
+
+/// Shows the panel.
+pub fn show(editor: &mut Editor, ui: &mut Ui) {
+    egui::Panel::left("tools").exact_size(216.0).resizable(false).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                let tools: &[(&str, Tool)] = match editor.stage {
+                    Stage::Mesh => &[("Select", Tool::Select), ("Brush select", Tool::Brush)],
+                    Stage::Labels => &[("Select", Tool::Select)],
+                    Stage::Stitches => {
+                        &[("Select", Tool::Select), ("Brush select", Tool::Brush), ("Paint", Tool::Paint)]
+                    }
+                    Stage::Yarn => &[
+                        ("Select", Tool::Select),
+                        ("Brush select", Tool::Brush),
+                        ("Paint", Tool::Paint),
+                        ("Grab", Tool::Grab),
+                    ],
+                };
+                for (name, tool) in tools {
+                    button_as(editor, ui, name, name, editor.tool == *tool);
+                }
+            });
+            if editor.tool == Tool::Brush {
+                let label = ui.label("Radius");
+                let radius = egui::Slider::new(&mut editor.panel.brush_radius, 5.0..=200.0);
+                ui.add(radius.suffix(" px")).labelled_by(label.id);
+            }
+            ui.horizontal(|ui| {
+                for (mode, name) in Mode::ALL {
+                    button_as(editor, ui, name, name, editor.selection().mode == mode);
+                }
+            });
+            selected(editor, ui);
+            ui.separator();
+            match editor.stage {
+                Stage::Mesh => {
+                    ui.label("The mesh as it was read. Go on to Labels.");
+                }
+                Stage::Labels => labels(editor, ui),
+                Stage::Stitches => {
+                    palette::show(editor, ui);
+                    ui.separator();
+                    patterns::show(editor, ui);
+                }
+                Stage::Yarn => {
+                    yarn::show(editor, ui);
+                    ui.separator();
+                    palette::show(editor, ui);
+                    ui.separator();
+                    patterns::show(editor, ui);
+                }
+            }
+        });
+    });
+}
+
+/// What is selected, in words.
+fn selected(editor: &Editor, ui: &mut Ui) {
+    let selection = editor.selection();
+    let count = |n: usize, one: &str| match n {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        n => Some(format!("{n} {one}s")),
+    };
+    let parts = [
+        count(selection.faces.len(), "face"),
+        count(selection.edges.len(), "edge"),
+        (!selection.hidden.is_empty()).then(|| format!("({} hidden)", selection.hidden.len())),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let text = if selection.is_empty() { "Nothing selected".to_owned() } else { "Selected:".to_owned() };
+    ui.label(egui::RichText::new(format!("{text} {}", parts.join(", "))).weak());
+}
+
+fn labels(editor: &mut Editor, ui: &mut Ui) {
+    button(editor, ui, "Label automatically");
+    ui.label("Selected edges");
+    ui.horizontal(|ui| {
+        button_as(editor, ui, "Label course", "Course", false);
+        button_as(editor, ui, "Label wale", "Wale", false);
+        button_as(editor, ui, "Clear label", "None", false);
+    });
+    ui.horizontal(|ui| {
+        button(editor, ui, "Fill row");
+        button(editor, ui, "Fill onwards");
+    });
+    button(editor, ui, "Flip row");
+    button(editor, ui, "Clear labels");
+    ui.separator();
+    ui.horizontal(|ui| {
+        let label = ui.label("Stitch width");
+        let width =
+            egui::DragValue::new(&mut editor.panel.width_mm).range(0.5..=100.0).speed(0.1).suffix(" mm");
+        ui.add(width).labelled_by(label.id).on_hover_text("How wide a stitch is to be");
+    });
+    button(editor, ui, "Tessellate");
+}
