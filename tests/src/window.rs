@@ -49,6 +49,7 @@ impl Window {
         let editor = Editor::new(project, None, Some(screen), || ()).unwrap();
         let harness = Harness::builder()
             .with_size([1360.0, 860.0])
+            .with_step_dt(1.0 / 60.0) // two clicks in as many frames are a double click
             .with_accessibility_check(false) // at every step; here once, in a test of its own
             .renderer(WgpuTestRenderer::from_render_state(painter))
             .build_ui_state(|ui, editor: &mut Editor| editor.ui(ui), editor);

@@ -102,9 +102,9 @@ fn a_painted_row_shows_plays_undoes_and_is_saved() {
     assert!(window.editor().yarn().unwrap().error.is_none());
     window.keep("played");
 
-    window.harness.get_by_role(egui::accesskit::Role::TextInput).focus();
+    window.harness.get_by_label("Path").focus();
     window.harness.step();
-    window.harness.get_by_role(egui::accesskit::Role::TextInput).type_text(path.to_str().unwrap());
+    window.harness.get_by_label("Path").type_text(path.to_str().unwrap());
     window.rest();
     window.press("Save");
     let saved = Project::open(&path).unwrap();

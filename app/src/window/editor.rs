@@ -156,9 +156,10 @@ impl Editor {
 
     /// Goes to another stage; what is in the hand is put down.
     pub(super) fn go_to(&mut self, stage: Stage) {
-        self.stage = stage;
-        self.take(Tool::Select);
-        self.under = None;
+        if std::mem::replace(&mut self.stage, stage) != stage {
+            self.take(Tool::Select);
+            self.under = None;
+        }
     }
 
     /// Fits the camera to what is shown.

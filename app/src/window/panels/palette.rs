@@ -18,7 +18,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         let field = egui::TextEdit::singleline(&mut editor.panel.palette_filter)
             .hint_text("find")
             .desired_width(110.0);
-        ui.add(field).on_hover_text("Show stitches by name or symbol");
+        let response = ui.add(field).on_hover_text("Show stitches by name or symbol");
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find a stitch"));
     });
     let wanted = editor.panel.palette_filter.trim().to_lowercase();
     let shown = |k: &&Kind| k.symbol.contains(&wanted) || k.name.to_lowercase().contains(&wanted);
