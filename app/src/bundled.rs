@@ -20,8 +20,8 @@ pub fn mesh() -> Result<Project> {
 
 /// Labels and stitches for it: stockinette with a ribbed hem.
 fn stitched(project: &Project) -> Result<Project> {
-    let tessellate = Command::Tessellate { width_mm: 1e3 * DEFAULT_STITCH_WIDTH };
-    let rib = Command::SetChart { chart: vec!["k k p p".into()], rows: Some([0, 6]) };
+    let tessellate = Command::Tessellate { width_mm: Some(1e3 * DEFAULT_STITCH_WIDTH) };
+    let rib = Command::SetChart { chart: vec!["k k p p".into()], rows: Some([0, 6]), faces: None };
     rib.apply(&tessellate.apply(project)?)
 }
 

@@ -4,7 +4,11 @@ use crate::command::Command;
 use crate::project::Project;
 use anyhow::Result;
 use sim_core::Facts;
+use std::collections::HashSet;
+use std::hash::Hash;
 use std::sync::Arc;
+use stitch_mesh::edit::Survivors;
+use stitch_mesh::ids::FaceId;
 use stitch_mesh::yarn_net::YarnState;
 
 /// A project that is being edited. Needs no window.
@@ -21,6 +25,8 @@ pub struct Document {
 struct Step {
     commands: Vec<Command>,
     project: Project,
+    /// Which faces came through the command, if it has changed the faces of the stitch mesh.
+    survivors: Option<Arc<Survivors>>,
 }
 
 impl Step {
@@ -47,8 +53,8 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<()> {
-        let after = command.apply(&self.project)?;
-        self.keep(command, after, false);
+        let done = command.perform(&self.project)?;
+        self.keep(command, done, false);
         Ok(())
     }
 
@@ -58,35 +64,62 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn amend(&mut self, command: Command) -> Result<()> {
-        let after = command.apply(&self.project)?;
-        self.keep(command, after, true);
+        let done = command.perform(&self.project)?;
+        self.keep(command, done, true);
         Ok(())
     }
 
     /// Takes over what a command has made of the project, worked out elsewhere; as a step of its own or as part of the last.
-    pub fn keep(&mut self, command: Command, after: Project, amends: bool) {
+    pub(crate) fn keep(
+        &mut self,
+        command: Command,
+        (after, survivors): (Project, Option<Survivors>),
+        amends: bool,
+    ) {
         let before = std::mem::replace(&mut self.project, after);
         self.undone.clear();
-        match self.done.last_mut().filter(|_| amends) {
-            Some(step) => match step.commands.last_mut().and_then(|last| merge(last, &command)) {
-                Some(both) => {
-                    step.commands.pop();
-                    step.commands.push(both);
-                }
-                None => step.commands.push(command),
-            },
-            None => self.done.push(Step { commands: vec![command], project: before }),
+        let survivors = survivors.map(Arc::new);
+        let Some(step) = self.done.last_mut().filter(|_| amends) else {
+            self.done.push(Step { commands: vec![command], project: before, survivors });
+            return;
+        };
+        step.survivors = match (step.survivors.take(), survivors) {
+            (Some(first), Some(second)) => Some(Arc::new(through_both(&first, &second))),
+            (first, second) => first.or(second),
+        };
+        match step.commands.last_mut().and_then(|last| Some((merge(last, &command)?, last))) {
+            Some((both, last)) => *last = both,
+            None => step.commands.push(command),
         }
     }
 
     /// Takes back the last command. False if there is none.
     pub fn undo(&mut self) -> bool {
-        swap(&mut self.done, &mut self.undone, &mut self.project)
+        let Some(step) = self.done.pop() else { return false };
+        let was = step.survivors.as_ref().map(|s| s.faces.clone());
+        let step = self.swap(step, was.as_deref());
+        self.undone.push(step);
+        true
     }
 
     /// Does again what was taken back last. False if there is none.
     pub fn redo(&mut self) -> bool {
-        swap(&mut self.undone, &mut self.done, &mut self.project)
+        let Some(step) = self.undone.pop() else { return false };
+        let was = step.survivors.as_ref().map(|s| s.faces_before());
+        let step = self.swap(step, was.as_deref());
+        self.done.push(step);
+        true
+    }
+
+    /// Goes to the other side of a step. `was` tells which face of the project now each face there is.
+    fn swap(&mut self, step: Step, was: Option<&[Option<FaceId>]>) -> Step {
+        let Step { commands, project: mut restored, survivors } = step;
+        // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
+        if !commands.contains(&Command::ResetYarn) {
+            restored.keep_yarn_of(&self.project, was);
+        }
+        let project = std::mem::replace(&mut self.project, restored);
+        Step { commands, project, survivors }
     }
 
     /// Commands done so far, oldest first.
@@ -117,29 +150,35 @@ impl Document {
     }
 }
 
-fn swap(from: &mut Vec<Step>, to: &mut Vec<Step>, project: &mut Project) -> bool {
-    let Some(Step { commands, project: mut restored }) = from.pop() else { return false };
-    // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
-    if !commands.contains(&Command::ResetYarn) {
-        restored.keep_yarn_of(project);
-    }
-    let other_side = std::mem::replace(project, restored);
-    to.push(Step { commands, project: other_side });
-    true
+/// What comes through two edits, one after the other.
+fn through_both(first: &Survivors, second: &Survivors) -> Survivors {
+    let vertices = first.vertices.iter().map(|v| v.and_then(|v| *second.vertices.get(v.index())?));
+    let faces = first.faces.iter().map(|f| f.and_then(|f| *second.faces.get(f.index())?));
+    Survivors { vertices: vertices.collect(), faces: faces.collect() }
 }
 
-/// One command that does what two of the same brush did.
+/// One command that does what two of the same brush or slider did.
 fn merge(first: &Command, second: &Command) -> Option<Command> {
+    use Command::{Dye, LabelEdges, SetMaterial, SetScene, SetStitch};
     match (first, second) {
-        (Command::SetStitch { faces, stitch: a }, Command::SetStitch { faces: more, stitch })
-            if a == stitch =>
-        {
-            let mut faces = faces.clone();
-            faces.extend(more.iter().filter(|f| !faces.contains(f)).copied().collect::<Vec<_>>());
-            Some(Command::SetStitch { faces, stitch: stitch.clone() })
+        (SetStitch { faces, stitch: a }, SetStitch { faces: more, stitch }) if a == stitch => {
+            Some(SetStitch { faces: union(faces, more), stitch: stitch.clone() })
         }
+        (Dye { faces, color: a }, Dye { faces: more, color }) if a == color => {
+            Some(Dye { faces: union(faces, more), color: *color })
+        }
+        (LabelEdges { edges, label: a }, LabelEdges { edges: more, label }) if a == label => {
+            Some(LabelEdges { edges: union(edges, more), label: *label })
+        }
+        (SetMaterial { .. }, SetMaterial { .. }) | (SetScene { .. }, SetScene { .. }) => Some(second.clone()),
         _ => None,
     }
+}
+
+/// What is in either list, in order of first mention.
+fn union<T: Copy + Eq + Hash>(first: &[T], second: &[T]) -> Vec<T> {
+    let mut seen = HashSet::new();
+    first.iter().chain(second).copied().filter(|x| seen.insert(*x)).collect()
 }
 
 #[cfg(test)]
@@ -225,8 +264,10 @@ mod tests {
     fn a_script_does_what_the_history_did() {
         let mut document = document();
         document.apply(Command::Autolabel).unwrap();
-        document.apply(Command::Tessellate { width_mm: 2.0 }).unwrap();
-        document.apply(Command::SetChart { chart: vec!["k p".into()], rows: Some([1, 2]) }).unwrap();
+        document.apply(Command::Tessellate { width_mm: Some(2.0) }).unwrap();
+        document
+            .apply(Command::SetChart { chart: vec!["k p".into()], rows: Some([1, 2]), faces: None })
+            .unwrap();
         let script = write_script(document.done()).unwrap();
         let mut again = Document::new(self::document().project().clone());
         for (_, command) in read_script(&script).unwrap() {

@@ -17,5 +17,6 @@ pub mod export;
 pub mod files;
 pub mod inspect;
 pub mod project;
+pub mod relax;
 pub mod scenes;
 pub mod window;

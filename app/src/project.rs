@@ -13,14 +13,16 @@ use serde::{Deserialize, Serialize};
 use sim_core::{Facts, Material, Scene, carry_over};
 use std::path::Path;
 use std::sync::Arc;
-use stitch_mesh::edge_counts::StitchSize;
-use stitch_mesh::ids::HalfEdgeId;
+use stitch_mesh::dye::Dye;
+use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
+use stitch_mesh::ids::{FaceId, HalfEdgeId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
 use stitch_mesh::lay::lay;
+use stitch_mesh::marks::Marks;
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::obj::{Unit, read_obj};
 use stitch_mesh::stitch::Stitch;
-use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::stitch_mesh::{Place, StitchMesh};
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Version of the file that this program writes, and the newest that it reads.
@@ -40,6 +42,8 @@ pub struct Project {
     pub material: Material,
     /// What surrounds the fabric in the simulation.
     pub scene: Scene,
+    /// Stitches and rows on every edge of the input, once somebody has asked for some.
+    pub counts: Option<EdgeCounts>,
     /// The fabric, once the mesh has been tessellated.
     pub fabric: Option<Fabric>,
 }
@@ -78,6 +82,7 @@ impl Project {
             size,
             material: Material::for_loop_width(size.width),
             scene: Scene::empty(),
+            counts: None,
             fabric: None,
         }
     }
@@ -96,14 +101,16 @@ impl Project {
         self.fabric.as_ref().context("the mesh has no stitches yet: label all its rows, then tessellate it")
     }
 
-    /// Takes over where the yarn is in another project, as far as both have the same faces.
-    pub fn keep_yarn_of(&mut self, other: &Self) {
-        if let (Some(fabric), Some(from)) = (&mut self.fabric, &other.fabric)
-            && fabric.stitches.mesh() == from.stitches.mesh()
-        {
-            fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net, Some)));
-            fabric.facts = from.facts.clone().filter(|_| Arc::ptr_eq(&fabric.net, &from.net));
+    /// Takes over where the yarn is in another project, as far as both have the same faces. `was` tells for each face here
+    /// which it is there; without it, both have to have the same mesh.
+    pub fn keep_yarn_of(&mut self, other: &Self, was: Option<&[Option<FaceId>]>) {
+        let (Some(fabric), Some(from)) = (&mut self.fabric, &other.fabric) else { return };
+        if was.is_none() && fabric.stitches.mesh() != from.stitches.mesh() {
+            return;
         }
+        let was = |f: FaceId| was.map_or(Some(f), |list| list.get(f.index()).copied().flatten());
+        fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net, was)));
+        fabric.facts = from.facts.clone().filter(|_| Arc::ptr_eq(&fabric.net, &from.net));
     }
 
     /// Reads a `.purl` file.
@@ -162,6 +169,9 @@ struct File {
     stitch_size: StitchSize,
     material: Material,
     scene: Scene,
+    /// Absent in files from before counts could be edited, and before there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    counts: Option<EdgeCounts>,
     fabric: Option<FileFabric>,
 }
 
@@ -175,6 +185,15 @@ struct FileMesh {
 struct FileFabric {
     mesh: FileMesh,
     stitches: Vec<Stitch>,
+    /// [face_count]; absent where nothing is dyed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dyes: Option<Vec<Dye>>,
+    /// [face_count]; absent where no stitch was cut from the input.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    places: Option<Vec<Option<Place>>>,
+    /// Absent where nothing is marked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    marks: Option<Marks>,
     state: Option<YarnState>,
     facts: Option<Facts>,
 }
@@ -182,6 +201,41 @@ struct FileFabric {
 impl FileMesh {
     fn of(mesh: &PolygonMesh) -> Self {
         Self { positions: mesh.positions().to_vec(), faces: mesh.face_lists() }
+    }
+}
+
+impl FileFabric {
+    fn of(fabric: &Fabric) -> Self {
+        let stitches = &fabric.stitches;
+        let (dyes, places, marks) = (stitches.dyes(), stitches.places(), stitches.marks());
+        Self {
+            mesh: FileMesh::of(stitches.mesh()),
+            stitches: stitches.stitches().to_vec(),
+            dyes: dyes.iter().any(|d| *d != Dye::UNDYED).then(|| dyes.to_vec()),
+            places: places.iter().any(Option::is_some).then(|| places.to_vec()),
+            marks: Some(marks).filter(|m| **m != Marks::default()).cloned(),
+            state: fabric.state.as_deref().cloned(),
+            facts: fabric.facts.clone(),
+        }
+    }
+
+    fn into_fabric(self) -> Result<Fabric> {
+        let mesh = PolygonMesh::new(self.mesh.positions, &self.mesh.faces).context("the stitch mesh")?;
+        let faces = mesh.face_count();
+        let stitches = StitchMesh::new(mesh, self.stitches)?.with(
+            self.dyes.unwrap_or_else(|| vec![Dye::UNDYED; faces]),
+            self.places.unwrap_or_else(|| vec![None; faces]),
+            self.marks.unwrap_or_default(),
+        )?;
+        let mut fabric = Fabric::new(stitches);
+        if let Some(state) = self.state {
+            if !state.fits(&fabric.net) || !state.is_finite() {
+                bail!("the state of the yarn does not belong to the stitches");
+            }
+            fabric.state = Some(Arc::new(state));
+            fabric.facts = self.facts;
+        }
+        Ok(fabric)
     }
 }
 
@@ -196,12 +250,8 @@ impl File {
             stitch_size: project.size,
             material: project.material.clone(),
             scene: project.scene.clone(),
-            fabric: project.fabric.as_ref().map(|f| FileFabric {
-                mesh: FileMesh::of(f.stitches.mesh()),
-                stitches: f.stitches.stitches().to_vec(),
-                state: f.state.as_deref().cloned(),
-                facts: f.facts.clone(),
-            }),
+            counts: project.counts.clone(),
+            fabric: project.fabric.as_ref().map(FileFabric::of),
         }
     }
 
@@ -215,20 +265,13 @@ impl File {
             size: self.stitch_size,
             material: self.material,
             scene: self.scene,
+            counts: self.counts,
             fabric: None,
         };
-        if let Some(file) = self.fabric {
-            let mesh = PolygonMesh::new(file.mesh.positions, &file.mesh.faces).context("the stitch mesh")?;
-            let mut fabric = Fabric::new(StitchMesh::new(mesh, file.stitches)?);
-            if let Some(state) = file.state {
-                if !state.fits(&fabric.net) || !state.is_finite() {
-                    bail!("the state of the yarn does not belong to the stitches");
-                }
-                fabric.state = Some(Arc::new(state));
-                fabric.facts = file.facts;
-            }
-            project.fabric = Some(fabric);
+        if let Some(counts) = &project.counts {
+            counts.check(&project.labelled).context("the counts of the edges")?;
         }
+        project.fabric = self.fabric.map(FileFabric::into_fabric).transpose()?;
         project.scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
         Ok(project)
     }
@@ -237,6 +280,7 @@ impl File {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stitch_mesh::ids::VertexId;
     use stitch_mesh::pieces::rectangle;
 
     fn project() -> Project {
@@ -250,11 +294,16 @@ mod tests {
     #[test]
     fn what_is_saved_is_read_again() {
         let mut before = project();
-        let mut state = before.fabric().unwrap().net.laid_state();
-        state.position[3].x += 0.1 + 1e-17;
-        before.fabric.as_mut().unwrap().state = Some(Arc::new(state));
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.purl");
+        let mut stitches = (*before.fabric().unwrap().stitches).clone();
+        stitches.set_dye(FaceId(2), "#c04030".parse().unwrap()).unwrap();
+        stitches.set_live([VertexId(15), VertexId(16)], true).unwrap();
+        let mut fabric = Fabric::new(stitches);
+        let mut state = fabric.net.laid_state();
+        state.position[3].x += 0.1 + 1e-17;
+        fabric.state = Some(Arc::new(state));
+        before.fabric = Some(fabric);
         before.save(&path).unwrap();
         let after = Project::open(&path).unwrap();
         assert_eq!(after.labelled, before.labelled);

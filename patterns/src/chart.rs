@@ -5,6 +5,7 @@
 //! directions: `k k p p` is a 2 × 2 rib; `k` and `p` on two lines is garter. Only stitches that join one loop to one can be
 //! charted so; faces that increase or decrease keep what they are.
 
+use std::collections::{HashSet, VecDeque};
 use std::str::FromStr;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::label::Row;
@@ -88,6 +89,60 @@ impl Chart {
         }
         set
     }
+
+    /// What the chart makes of those faces of a selection that join one loop to one. Each connected part of it begins with
+    /// its lowest stitch on the left; from there columns are counted along the rows and rows up the wale.
+    pub fn over_faces(&self, stitches: &StitchMesh, selected: &[FaceId]) -> Vec<(FaceId, Stitch)> {
+        let mut open: HashSet<FaceId> = selected.iter().copied().collect();
+        let mut set = Vec::new();
+        let starts = stitches.rows();
+        for start in starts.iter().flat_map(|r| leftmost_first(r, &open)).collect::<Vec<_>>() {
+            let mut seeds = VecDeque::from([(start, 0i64, 0i64)]);
+            while let Some((seed, row, column)) = seeds.pop_front() {
+                for (face, column) in run(stitches, seed, column, &mut open) {
+                    let now = stitches.stitch(face);
+                    if (now.bottoms(), now.tops()) == (1, 1) {
+                        let line = &self.rows[row.rem_euclid(self.rows.len() as i64) as usize];
+                        let stitch = &line[column.rem_euclid(line.len() as i64) as usize];
+                        set.push((face, stitch.clone()));
+                    }
+                    seeds.extend(stitches.above(face).zip(column..).map(|(f, c)| (f, row + 1, c)));
+                    seeds.extend(stitches.below(face).zip(column..).map(|(f, c)| (f, row - 1, c)));
+                }
+            }
+        }
+        set
+    }
+}
+
+/// The selected faces of a row, beginning with one that has no selected face on its left if there is one.
+fn leftmost_first(row: &Row, selected: &HashSet<FaceId>) -> Vec<FaceId> {
+    let n = row.faces.len();
+    let is_in = |i: usize| selected.contains(&row.faces[i % n]);
+    let begins = |i: &usize| is_in(*i) && !((*i > 0 || row.closed) && is_in(i + n - 1));
+    let first = (0..n).find(begins).unwrap_or(0);
+    (first..first + n).filter(|i| is_in(*i)).map(|i| row.faces[i % n]).collect()
+}
+
+/// Takes a face and its neighbours in the row, as far as they are open on either side, with their columns.
+fn run(stitches: &StitchMesh, seed: FaceId, column: i64, open: &mut HashSet<FaceId>) -> Vec<(FaceId, i64)> {
+    let mut taken = Vec::new();
+    if !open.remove(&seed) {
+        return taken;
+    }
+    taken.push((seed, column));
+    for step in [1, -1] {
+        let (mut face, mut column) = (seed, column);
+        loop {
+            let side = if step > 0 { stitches.right(face) } else { stitches.left(face) };
+            match stitches.mesh().face_across(side).filter(|f| open.remove(f)) {
+                Some(next) => (face, column) = (next, column + step),
+                None => break,
+            }
+            taken.push((face, column));
+        }
+    }
+    taken
 }
 
 #[cfg(test)]
@@ -109,6 +164,20 @@ mod tests {
             .map(|r| r.faces.iter().map(|f| fabric.stitch(*f).to_string()).collect())
             .collect();
         assert_eq!(rows, ["kkppkk", "ppkkpp", "kkppkk", "ppkkpp"]);
+    }
+
+    #[test]
+    fn a_selection_has_its_own_beginning() {
+        let chart: Chart = "p k\nk k".parse().unwrap();
+        let mut fabric = rectangle(5, 4, StitchSize::of_width(3e-3)).unwrap();
+        // Columns 1 to 4 of rows 1 to 3, without their lower right corner.
+        let selected = [6, 7, 11, 12, 13, 14, 16, 17, 18, 19].map(FaceId);
+        for (face, stitch) in chart.over_faces(&fabric, &selected) {
+            fabric.set_stitch(face, stitch).unwrap();
+        }
+        let row =
+            |r: u32| (5 * r..5 * r + 5).map(|f| fabric.stitch(FaceId(f)).to_string()).collect::<String>();
+        assert_eq!([0, 1, 2, 3].map(row), ["kkkkk", "kpkkk", "kkkkk", "kpkpk"]);
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod gravity;
 mod local;
 mod mass;
 mod material;
+pub mod mesh_relax;
 mod model;
 mod noise;
 mod parallel;

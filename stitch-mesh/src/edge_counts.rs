@@ -5,7 +5,7 @@
 //! the edge below it while its own length is within a stitch of that. What is really shaped gets its shaping, one edge
 //! length after another.
 
-use crate::ids::{EdgeId, FaceId};
+use crate::ids::{EdgeId, FaceId, HalfEdgeId};
 use crate::label::{Incomplete, LabelledMesh, Wales};
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +47,17 @@ pub enum CountError {
     /// The stitch size is no length.
     #[error("the stitch size must be above zero, not {0} m")]
     StitchSize(f64),
+    /// No stitches at all on an edge.
+    #[error("an edge needs at least one stitch or row")]
+    Zero,
+    /// A list of another length than the mesh has edges.
+    #[error("{given} edge counts for {edges} edges")]
+    Length {
+        /// Counts given.
+        given: usize,
+        /// Edges there are.
+        edges: usize,
+    },
     /// More stitches than a garment has.
     #[error(
         "this would make {0} stitches; the limit is {MOST_STITCHES}: take larger stitches, or check the unit of the mesh"
@@ -75,16 +86,60 @@ impl EdgeCounts {
             edges.iter().for_each(|e| counts[e.index()] = count(mean, size.height));
         }
         let counts = Self { counts, marked: Vec::new() };
-        match counts.stitches(labelled) {
+        counts.check(labelled)?;
+        Ok(counts)
+    }
+
+    /// Changes the count of an edge; that of a wale edge together with all wale edges of its row.
+    ///
+    /// # Errors
+    /// [`CountError::Zero`], [`CountError::TooMany`], [`CountError::Length`]; nothing is changed then.
+    pub fn set(&mut self, labelled: &LabelledMesh, edge: EdgeId, count: u32) -> Result<(), CountError> {
+        let mesh = labelled.mesh();
+        let mut after = self.clone();
+        let edges = match labelled.is_wale(edge) {
+            true => labelled.wales_of_row(edge),
+            false => vec![edge],
+        };
+        if after.counts.len() == mesh.edge_count() {
+            edges.iter().for_each(|e| after.counts[e.index()] = count);
+        }
+        after.check(labelled)?;
+        *self = after;
+        Ok(())
+    }
+
+    /// Marks a wale edge for increases and decreases, or takes the mark away.
+    pub fn mark(&mut self, edge: EdgeId, marked: bool) {
+        self.marked.retain(|e| *e != edge);
+        if marked {
+            self.marked.push(edge);
+        }
+    }
+
+    /// Whether there is a count for every edge of the mesh, none is zero, and together they make no more than
+    /// [`MOST_STITCHES`].
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn check(&self, labelled: &LabelledMesh) -> Result<(), CountError> {
+        let (given, edges) = (self.counts.len(), labelled.mesh().edge_count());
+        if given != edges || self.marked.iter().any(|e| e.index() >= edges) {
+            return Err(CountError::Length { given, edges });
+        }
+        if self.counts.contains(&0) {
+            return Err(CountError::Zero);
+        }
+        match self.stitches(labelled) {
             many if many > MOST_STITCHES => Err(CountError::TooMany(many)),
-            _ => Ok(counts),
+            _ => Ok(()),
         }
     }
 
     /// About how many stitches the counts make: rows times the mean of top and bottom, face by face.
     fn stitches(&self, labelled: &LabelledMesh) -> u64 {
         let faces = labelled.mesh().faces().filter_map(|f| FaceCounts::of(labelled, self, f));
-        faces.map(|c| u64::from(c.rows) * u64::from(c.bottom + c.top).div_ceil(2)).sum()
+        faces.map(|c| u64::from(c.rows) * (u64::from(c.bottom) + u64::from(c.top)).div_ceil(2)).sum()
     }
 }
 
@@ -140,8 +195,8 @@ impl FaceCounts {
     pub fn of(labelled: &LabelledMesh, counts: &EdgeCounts, face: FaceId) -> Option<Self> {
         let wales = labelled.wales(face)?;
         let count = |h| counts.counts[labelled.mesh().edge(h).index()];
-        let bottom = labelled.bottoms(wales).into_iter().map(count).sum();
-        let top = labelled.tops(wales).into_iter().map(count).sum();
+        let sum = |chain: Vec<HalfEdgeId>| chain.into_iter().map(count).fold(0, u32::saturating_add);
+        let (bottom, top) = (sum(labelled.bottoms(wales)), sum(labelled.tops(wales)));
         Some(Self { wales, bottom, top, rows: count(wales.right) })
     }
 

@@ -174,6 +174,24 @@ impl LabelledMesh {
         self.labels[edge.index()]
     }
 
+    /// Whether an edge is labelled wale.
+    pub fn is_wale(&self, edge: EdgeId) -> bool {
+        self.label(edge) == Some(EdgeLabel::Wale)
+    }
+
+    /// All wale edges of the rows at a wale edge, it included.
+    pub fn wales_of_row(&self, edge: EdgeId) -> Vec<EdgeId> {
+        let (first, twin) = self.mesh.edge_sides(edge);
+        let mut edges = vec![edge];
+        for face in [Some(first), twin].into_iter().flatten().map(|h| self.mesh.face(h)) {
+            let row = self.row_of(face).faces.into_iter().filter_map(|f| self.wales(f));
+            edges.extend(row.flat_map(|w| [self.mesh.edge(w.left), self.mesh.edge(w.right)]));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
     /// The wale half-edges of a face, once it has exactly two and no edge is unlabelled.
     pub fn wales(&self, face: FaceId) -> Option<Wales> {
         self.wales[face.index()]

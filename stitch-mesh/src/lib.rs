@@ -2,21 +2,30 @@
 //! No GPU, no window, no iteration.
 
 pub mod autolabel;
+pub mod cable;
 mod corners;
+pub mod dye;
 pub mod edge_counts;
+pub mod edit;
 pub mod fill;
 #[cfg(test)]
 mod grid;
 pub mod ids;
+mod keep;
 pub mod label;
 pub mod lay;
+pub mod marks;
 pub mod mean_value;
 pub mod mesh;
 pub mod obj;
 pub mod pieces;
+mod region;
+pub mod seam;
 pub mod stitch;
 pub mod stitch_mesh;
+pub mod subdivide;
 pub mod tessellate;
+pub mod unravel;
 pub mod validate;
 pub mod yarn_curves;
 pub mod yarn_net;

@@ -8,18 +8,40 @@
 //! - Two rows meet course to course: usually tops to bottoms; tops to tops or bottoms to bottoms where the wale directions
 //!   oppose each other (§4.4).
 //!
-//! Changing the stitch of a face keeps all ids; everything else builds a new mesh.
+//! Beside its stitch a face has the colour of its yarn and, where it was cut from a face of the input, its place there.
+//! Cables, seams, live edges and the spiral layout are [`Marks`] on edges, named by their vertices.
+//!
+//! Changing the stitch of a face keeps all ids; what changes faces builds a new mesh ([`crate::edit`]).
 
+use crate::dye::Dye;
 use crate::ids::{FaceId, HalfEdgeId};
 use crate::label::Row;
+use crate::marks::Marks;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// A mesh of stitches. See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StitchMesh {
     mesh: PolygonMesh,
     stitches: Vec<Stitch>,
+    /// Colour of the yarn with which each stitch is worked.
+    pub(crate) dyes: Vec<Dye>,
+    pub(crate) places: Vec<Option<Place>>,
+    pub(crate) marks: Marks,
+}
+
+/// Where in the input mesh a stitch was cut from: when the input is cut again, a stitch in the same place keeps its type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Place {
+    /// The face of the input mesh.
+    pub face: FaceId,
+    /// The row within it, from 0 at the bottom.
+    pub row: u32,
+    /// The stitch within that row, from 0 on the left.
+    pub column: u32,
 }
 
 /// Why a mesh with stitches is not a stitch mesh, or a stitch cannot be set.
@@ -85,7 +107,14 @@ impl StitchMesh {
         if stitches.len() != mesh.face_count() {
             return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
         }
-        let stitch_mesh = Self { mesh, stitches };
+        let faces = mesh.face_count();
+        let stitch_mesh = Self {
+            mesh,
+            stitches,
+            dyes: vec![Dye::UNDYED; faces],
+            places: vec![None; faces],
+            marks: Marks::default(),
+        };
         for face in stitch_mesh.mesh.faces() {
             stitch_mesh.check_fit(face, stitch_mesh.stitch(face))?;
         }
@@ -115,6 +144,14 @@ impl StitchMesh {
             return Err(StitchMeshError::NothingBelow { face, stitch: stitch.to_string() });
         }
         Ok(())
+    }
+
+    /// The same stitches with the vertices at other positions [m]. All ids survive.
+    ///
+    /// # Errors
+    /// As [`PolygonMesh::moved_to`].
+    pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, StitchMeshError> {
+        Ok(Self { mesh: self.mesh.moved_to(positions)?, ..self.clone() })
     }
 
     /// The mesh.
@@ -148,6 +185,25 @@ impl StitchMesh {
         Ok(())
     }
 
+    /// Colours of the yarn with which the stitches are worked, [face_count].
+    pub fn dyes(&self) -> &[Dye] {
+        &self.dyes
+    }
+
+    /// Changes the colour of the yarn with which a stitch is worked. All ids survive.
+    ///
+    /// # Errors
+    /// There is no such face.
+    pub fn set_dye(&mut self, face: FaceId, dye: Dye) -> Result<(), StitchMeshError> {
+        *self.dyes.get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? = dye;
+        Ok(())
+    }
+
+    /// Where in the input mesh the stitches were cut from, [face_count].
+    pub fn places(&self) -> &[Option<Place>] {
+        &self.places
+    }
+
     /// Bottom half-edges of a face, left to right.
     pub fn bottoms(&self, face: FaceId) -> impl ExactSizeIterator<Item = HalfEdgeId> + use<> {
         self.mesh.face_half_edges(face).take(self.stitch(face).bottoms())
@@ -169,6 +225,16 @@ impl StitchMesh {
     pub fn left(&self, face: FaceId) -> HalfEdgeId {
         let stitch = self.stitch(face);
         HalfEdgeId::new(self.right(face).index() + stitch.tops() + 1)
+    }
+
+    /// The way up across a face: from the middle of its bottom side to the middle of its top side [m].
+    pub fn up(&self, face: FaceId) -> DVec3 {
+        let middle = |a: HalfEdgeId, b: HalfEdgeId| {
+            0.5 * (self.mesh.position(self.mesh.origin(a)) + self.mesh.position(self.mesh.tip(b)))
+        };
+        let (left, right) = (self.left(face), self.right(face));
+        // The left wale edge runs down, the right one up.
+        middle(left, right) - middle(right, left)
     }
 
     /// Whether a half-edge is a bottom of its face.

@@ -15,7 +15,7 @@ use crate::label::{Incomplete, LabelledMesh, Wales};
 use crate::mean_value::mean_value_weights;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
-use crate::stitch_mesh::{StitchMesh, StitchMeshError};
+use crate::stitch_mesh::{Place, StitchMesh, StitchMeshError};
 use glam::{DVec2, DVec3};
 
 /// Why a labelled mesh cannot be tessellated.
@@ -69,13 +69,16 @@ pub fn tessellate(labelled: &LabelledMesh, counts: &EdgeCounts) -> Result<Stitch
         on_edge: Vec::new(),
         faces: Vec::new(),
         stitches: Vec::new(),
+        places: Vec::new(),
     };
     out.place_edge_vertices();
     for face in mesh.faces() {
         out.cut(face)?;
     }
     let mesh = PolygonMesh::new(out.positions, &out.faces)?;
-    Ok(StitchMesh::new(mesh, out.stitches)?)
+    let mut stitches = StitchMesh::new(mesh, out.stitches)?;
+    stitches.places = out.places.into_iter().map(Some).collect();
+    Ok(stitches)
 }
 
 struct Builder<'a> {
@@ -86,6 +89,7 @@ struct Builder<'a> {
     on_edge: Vec<Vec<u32>>,
     faces: Vec<Vec<u32>>,
     stitches: Vec<Stitch>,
+    places: Vec<Place>,
 }
 
 impl Builder<'_> {
@@ -159,7 +163,7 @@ impl Builder<'_> {
                 boundary.push(right[i as usize]);
                 boundary
             };
-            self.row(wales, i as usize, &below, &above);
+            self.row(wales, i, &below, &above);
             below = above;
         }
         Ok(())
@@ -200,8 +204,8 @@ impl Builder<'_> {
         corners
     }
 
-    /// One row of stitches between two boundaries (vertices left to right).
-    fn row(&mut self, wales: Wales, row: usize, below: &[u32], above: &[u32]) {
+    /// One row of stitches, counted from 1, between two boundaries (vertices left to right).
+    fn row(&mut self, wales: Wales, row: u32, below: &[u32], above: &[u32]) {
         let (a, b) = (below.len() - 1, above.len() - 1);
         let stitches = a.min(b).max(1);
         let mesh = self.labelled.mesh();
@@ -222,6 +226,7 @@ impl Builder<'_> {
             self.faces.push(face);
             let in_left_half = 2 * i < stitches;
             self.stitches.push(Stitch::default_for(nb, nt, in_left_half));
+            self.places.push(Place { face: mesh.face(wales.left), row: row - 1, column: i as u32 });
             (p, q) = (p + nb, q + nt);
         }
     }

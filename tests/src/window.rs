@@ -237,5 +237,5 @@ pub fn swatch() -> Project {
 /// A swatch of few stitches, so that simulating it takes no time.
 pub fn knitted() -> Project {
     let labelled = Command::Autolabel.apply(&swatch()).unwrap();
-    Command::Tessellate { width_mm: 16.0 }.apply(&labelled).unwrap()
+    Command::Tessellate { width_mm: Some(16.0) }.apply(&labelled).unwrap()
 }

@@ -128,7 +128,7 @@ fn every_bundled_mesh_labels_itself_and_becomes_stitches() {
     for name in ASSETS {
         let labelled = Command::Autolabel.apply(&opened(name)).unwrap();
         assert_eq!(labelled.labelled.problems(), [], "{name}");
-        let project = Command::Tessellate { width_mm: 10.0 }.apply(&labelled).unwrap();
+        let project = Command::Tessellate { width_mm: Some(10.0) }.apply(&labelled).unwrap();
         let fabric = project.fabric().unwrap();
         let stitches = &fabric.stitches;
         // Inside, a plain stitch has four contact nodes of two yarns each.

@@ -125,7 +125,7 @@ fn a_painted_row_shows_plays_undoes_and_is_saved() {
 #[test]
 fn painting_while_it_plays_keeps_it_playing() {
     // Garter stays flat: on a slow machine the yarn has not gone from under the pointer between two frames.
-    let garter = Command::SetChart { chart: vec!["k".into(), "p".into()], rows: None };
+    let garter = Command::SetChart { chart: vec!["k".into(), "p".into()], rows: None, faces: None };
     let mut window = Window::new(garter.apply(&knitted()).unwrap());
     let purls_before = window.purls();
     window.press("Yarn");

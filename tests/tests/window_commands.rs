@@ -98,7 +98,8 @@ fn a_click_on_a_problem_selects_and_frames_it() {
     let labelled = Command::Autolabel.apply(&swatch()).unwrap();
     let mesh = labelled.labelled.mesh();
     let edge = mesh.edge_ends(mesh.edge(mesh.first_half_edge(stitch_mesh::ids::FaceId(0)))).map(|v| v.0);
-    let mut window = Window::new(Command::LabelEdge { edge, label: None }.apply(&labelled).unwrap());
+    let mut window =
+        Window::new(Command::LabelEdges { edges: vec![edge], label: None }.apply(&labelled).unwrap());
     let before = window.keep("problem-before");
     let problem = window.editor().project().labelled.problems()[0].clone();
     window.press(&format!("face {}: {}", problem.face(), problem.what()));

@@ -294,7 +294,7 @@ impl Editor {
 
     /// Cuts the mesh into stitches of the width in the panel.
     pub(super) fn tessellate(&mut self) {
-        self.act(Command::Tessellate { width_mm: self.panel.width_mm });
+        self.act(Command::Tessellate { width_mm: Some(self.panel.width_mm) });
         self.go_to(Stage::Stitches);
     }
 }

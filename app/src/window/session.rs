@@ -223,7 +223,7 @@ impl Worker {
 
     fn apply(&mut self, command: Command, amends: bool) -> Result<String> {
         let (doing, before) = (command.clone(), self.document.project().clone());
-        let after = self.unless_cancelled(move || doing.apply(&before))?;
+        let after = self.unless_cancelled(move || doing.perform(&before))?;
         let name = command.name();
         self.document.keep(command, after, amends);
         Ok(name)

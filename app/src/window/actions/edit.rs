@@ -84,7 +84,7 @@ fn ends(editor: &Editor, edges: Vec<EdgeId>) -> Vec<[u32; 2]> {
 
 fn label(editor: &mut Editor, label: Option<EdgeLabel>) {
     let edges = ends(editor, editor.edges_meant());
-    editor.act_all(edges.into_iter().map(|edge| Command::LabelEdge { edge, label }));
+    editor.act(Command::LabelEdges { edges, label });
 }
 
 fn fill(editor: &mut Editor, onwards: bool) {

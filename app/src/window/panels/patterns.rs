@@ -93,6 +93,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         }
     });
     if let Some(chart) = chosen {
-        editor.act(Command::SetChart { chart, rows: None });
+        let selected = &editor.selection().faces;
+        let faces = (!selected.is_empty()).then(|| selected.iter().map(|f| f.0).collect());
+        editor.act(Command::SetChart { chart, rows: None, faces });
     }
 }

@@ -21,7 +21,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             }
             let field =
                 egui::TextEdit::singleline(&mut editor.panel.path).hint_text("path").desired_width(180.0);
-            let response = ui.add(field).on_hover_text("Where the project is saved; Enter opens what is there");
+            let response =
+                ui.add(field).on_hover_text("Where the project is saved; Enter opens what is there");
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Path"));
             if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
                 editor.request(Request::Open(PathBuf::from(editor.panel.path.trim())));

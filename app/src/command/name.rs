@@ -1,0 +1,66 @@
+//! Names of commands, as the history shows them.
+
+use super::Command;
+use stitch_mesh::label::EdgeLabel;
+
+/// A number and its noun: `1 edge`, `2 edges`.
+fn many(count: usize, one: &str) -> String {
+    match (count, one) {
+        (1, one) => format!("1 {one}"),
+        (count, "stitch") => format!("{count} stitches"),
+        (count, one) => format!("{count} {one}s"),
+    }
+}
+
+impl Command {
+    /// Its name in the history.
+    pub fn name(&self) -> String {
+        match self {
+            Self::FillFromBorder { .. } => "Fill row from border".into(),
+            Self::FillFromCourse { .. } => "Fill next row".into(),
+            Self::FillOnwards { .. } => "Fill rows onwards".into(),
+            Self::LabelEdges { edges, label: Some(EdgeLabel::Course) } => {
+                format!("Label {} course", many(edges.len(), "edge"))
+            }
+            Self::LabelEdges { edges, label: Some(EdgeLabel::Wale) } => {
+                format!("Label {} wale", many(edges.len(), "edge"))
+            }
+            Self::LabelEdges { edges, label: None } => {
+                format!("Clear {}", many(edges.len(), "edge label"))
+            }
+            Self::FlipRow { .. } => "Flip row".into(),
+            Self::Autolabel => "Label automatically".into(),
+            Self::ClearLabels => "Clear labels".into(),
+            Self::Tessellate { width_mm: Some(width) } => format!("Tessellate at {width} mm"),
+            Self::Tessellate { width_mm: None } => "Tessellate as counted".into(),
+            Self::SetEdgeCounts { edges, count } => {
+                format!("Count {count} on {}", many(edges.len(), "edge"))
+            }
+            Self::MarkWale { marked: true, .. } => "Shape along edge".into(),
+            Self::MarkWale { marked: false, .. } => "Shape along both edges".into(),
+            Self::SetStitch { faces, stitch } => format!("Set {} to {stitch}", many(faces.len(), "stitch")),
+            Self::SetChart { chart, .. } => format!("Repeat {}", chart.join(" / ")),
+            Self::FillRegion { stitch, .. } => format!("Fill with {stitch}"),
+            Self::SetCable { cable } => {
+                let strands: Vec<String> = cable.strands.iter().map(u8::to_string).collect();
+                format!("Cable {}", strands.join("/"))
+            }
+            Self::ClearCables { .. } => "Clear cables".into(),
+            Self::SetLive { edges, live: true } => format!("Leave {} live", many(edges.len(), "loop")),
+            Self::SetLive { edges, live: false } => format!("Bind off {}", many(edges.len(), "loop")),
+            Self::SetSpiral { spiral: true } => "Knit in a spiral".into(),
+            Self::SetSpiral { spiral: false } => "Knit in rings".into(),
+            Self::Sew { .. } => "Sew seam".into(),
+            Self::Unsew { .. } => "Undo seam".into(),
+            Self::Dye { faces, color } => format!("Dye {} {color}", many(faces.len(), "stitch")),
+            Self::DyeRows { rows: [first, last], color } => {
+                format!("Dye {} {color}", many(last.abs_diff(*first) + 1, "row"))
+            }
+            Self::SetMaterial { .. } => "Change yarn".into(),
+            Self::SetScene { .. } => "Change scene".into(),
+            Self::ResetYarn => "Lay yarn anew".into(),
+            Self::RelaxMesh { surface: true, .. } => "Relax stitches".into(),
+            Self::RelaxMesh { surface: false, .. } => "Relax stitches freely".into(),
+        }
+    }
+}
