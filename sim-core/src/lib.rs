@@ -36,6 +36,7 @@ mod simulator;
 mod solver;
 mod step;
 mod stretch;
+mod take_in;
 mod thread;
 mod wrap;
 

@@ -5,7 +5,8 @@
 //! it that knitters use. There is no behaviour per stitch type anywhere: the yarn layer reads these two lists.
 //!
 //! Symbols are the paper's: `k`, `p`, `ky`, `kyk`, `d12k`, `d312p`; `k1` and `y-1` for a top twisted clockwise or
-//! counter-clockwise; `d123` alone for loops gathered on a yarn that makes no loop of its own. `s` and `x` make no loop either:
+//! counter-clockwise; `d123` alone for loops gathered on a yarn that makes no loop of its own, `d0y` for a yarn-over with no loop
+//! below it. `s` and `x` make no loop either:
 //! there the old one goes on up, slipped, and the row's yarn passes it behind (`s`) or woven through its legs (`x`); so `sk`
 //! is a loop slipped and knitted into as well.
 //!
@@ -123,6 +124,9 @@ impl Stitch {
         if !self.holds() && self.bottoms() > 1 {
             return Some("its loops would be held by nothing");
         }
+        if self.bottoms() == 0 && self.holds() {
+            return Some("without a loop below it only yarn-overs can be made");
+        }
         match (self.ops.iter().filter(|op| op.make.passes_on()).count(), self.bottoms()) {
             (0, _) | (1, 1) => None,
             (1, _) => Some("only one loop can be slipped at a time"),
@@ -133,7 +137,9 @@ impl Stitch {
 
 impl fmt::Display for Stitch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.stack.len() > 1 || self.ops.is_empty() {
+        if self.stack.is_empty() {
+            f.write_str("d0")?;
+        } else if self.stack.len() > 1 || self.ops.is_empty() {
             f.write_str("d")?;
             self.stack.iter().try_for_each(|b| write!(f, "{}", b + 1))?;
         }
@@ -163,10 +169,11 @@ impl FromStr for Stitch {
         let mut stack: SmallVec<[u8; 2]> = smallvec![0];
         if let Some(after) = rest.strip_prefix('d') {
             let digits = after.len() - after.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-            stack = after.bytes().take(digits).map(|b| b.wrapping_sub(b'1')).collect();
+            let order = if &after[..digits] == "0" { "" } else { &after[..digits] };
+            stack = order.bytes().map(|b| b.wrapping_sub(b'1')).collect();
             let mut sorted = stack.clone();
             sorted.sort_unstable();
-            if stack.is_empty() || sorted.iter().enumerate().any(|(i, b)| *b as usize != i) {
+            if digits == 0 || sorted.iter().enumerate().any(|(i, b)| *b as usize != i) {
                 return Err(fail("after d stand the loops from front to back, each once, as in d21k"));
             }
             rest = &after[digits..];
@@ -222,7 +229,7 @@ mod tests {
     fn table_1_reads_and_writes() {
         let table = "k p kp ky yk py yp kpk kyk yky kpy ykp pkp pyp ypy pky ypk d12k d21k d12p d21p d123k d132k d213k \
                      d231k d312k d321k d123p d132p d213p d231p d312p d321p k1 k-1 y1 y-1 k1y kp1 d21k-1 d1 d213 \
-                     s x sk ks s1 kxk";
+                     s x sk ks s1 kxk d0y d0yy";
         for symbol in table.split_whitespace() {
             let stitch: Stitch = symbol.parse().unwrap();
             assert_eq!(stitch.to_string(), symbol);
@@ -233,8 +240,10 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for symbol in ["", "d", "dk", "d11k", "d13k", "d0k", "q", "k2", "kå", "d12y", "1", "d12s", "ss", "sx"]
-        {
+        for symbol in [
+            "", "d", "dk", "d11k", "d13k", "d0k", "q", "k2", "kå", "d12y", "1", "d0", "d01k", "d12s", "ss",
+            "sx",
+        ] {
             assert!(symbol.parse::<Stitch>().is_err(), "{symbol}");
         }
     }

@@ -177,6 +177,7 @@ impl YarnNet {
             velocity: vec![DVec3::ZERO; self.nodes.len()],
             sliding: self.visits.iter().map(|v| v.u).collect(),
             sliding_velocity: vec![0.0; self.visits.len()],
+            taken_in: 0.0,
         }
     }
 }
@@ -192,6 +193,9 @@ pub struct YarnState {
     pub sliding: Vec<f64>,
     /// Their rates, [visit_count] [m/s].
     pub sliding_velocity: Vec<f64>,
+    /// How much of [`YarnNet::taken_in`] has been taken in, 0 to 1.
+    #[serde(default)]
+    pub taken_in: f64,
 }
 
 impl YarnState {
@@ -199,6 +203,7 @@ impl YarnState {
     pub fn is_finite(&self) -> bool {
         self.position.iter().chain(&self.velocity).all(|v| v.is_finite())
             && self.sliding.iter().chain(&self.sliding_velocity).all(|u| u.is_finite())
+            && (0.0..=1.0).contains(&self.taken_in)
     }
 
     /// Whether this state has the shape of `net`.

@@ -30,7 +30,7 @@ impl<const D: usize> Conjugate<D> {
                 return iteration;
             }
             let curvature = system.product(&self.direction, &mut self.product);
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 return iteration;
             }
             let alpha = rz / curvature;

@@ -105,3 +105,53 @@ fn rows(stitches: &StitchMesh) -> Vec<u32> {
     }
     row
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use stitch_mesh::edge_counts::StitchSize;
+    use stitch_mesh::mesh::PolygonMesh;
+    use stitch_mesh::pieces::{rectangle, tube};
+    use stitch_mesh::stitch::Stitch;
+
+    const REST: RestLengths = RestLengths { course: 4e-3, wale: 3e-3 };
+
+    #[test]
+    fn plain_fabric_has_its_springs() {
+        let piece = rectangle(5, 4, StitchSize::of_width(4e-3)).unwrap();
+        let elements = Elements::new(&piece, &REST);
+        assert_eq!(elements.springs.len(), (5 * 5 + 6 * 4) + 2 * 20);
+        assert_eq!(elements.corners.len(), 4 * 20);
+        assert_eq!(elements.struts.len(), 6 * 3, "three inner boundaries of rows, six wales");
+        let round = Elements::new(&tube(7, 4, StitchSize::of_width(4e-3)).unwrap(), &REST);
+        assert_eq!(round.struts.len(), 7 * 3);
+    }
+
+    #[test]
+    fn every_spring_of_a_piece_at_rest_is_at_rest() {
+        let piece = rectangle(3, 3, StitchSize { width: REST.course, height: REST.wale }).unwrap();
+        let at = |v: u32| piece.mesh().positions()[v as usize] / REST.unit();
+        for Spring { ends: [a, b], rest } in Elements::new(&piece, &REST).springs {
+            assert!((at(a).distance(at(b)) - rest).abs() < 1e-12);
+        }
+    }
+
+    /// One face with `stitch` on a half circle of vertices, bottoms first.
+    fn single(stitch: &str) -> StitchMesh {
+        let stitch: Stitch = stitch.parse().unwrap();
+        let count = stitch.bottoms() + stitch.tops() + 2;
+        let at = |i: usize| DVec3::new((i as f64).cos(), (i as f64).sin(), 0.0);
+        let mesh = PolygonMesh::new((0..count).map(at).collect(), &[(0..count as u32).collect()]).unwrap();
+        StitchMesh::new(mesh, vec![stitch]).unwrap()
+    }
+
+    #[test]
+    fn sub_quads_join_loops_with_those_they_are_made_of() {
+        // Figure 15: an increase to three has one bottom, 0–1, and three tops, from 2 on the right to 5 on the left.
+        assert_eq!(sub_quads(&single("kyk"), FaceId(0)), [[0, 1, 4, 5], [0, 1, 3, 4], [0, 1, 2, 3]]);
+        assert_eq!(sub_quads(&single("d12k"), FaceId(0)), [[0, 1, 3, 4], [1, 2, 3, 4]]);
+        assert_eq!(sub_quads(&single("k"), FaceId(0)), [[0, 1, 2, 3]]);
+        assert!(sub_quads(&single("d1"), FaceId(0)).is_empty(), "a triangle has none");
+    }
+}

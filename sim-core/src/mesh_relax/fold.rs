@@ -51,3 +51,40 @@ pub(super) fn expand(x @ [i, j, k]: [DVec3; 3], normal: DVec3) -> Option<(f64, f
     let (at_i, at_k) = (normal.cross(k - j), (i - j).cross(normal));
     Some((slope, curvature, [at_i, -at_i - at_k, at_k]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::local::{Element, Local, point, put};
+    use crate::testing::finite_difference::check_element;
+
+    struct Fold(DVec3);
+
+    impl Element<9> for Fold {
+        fn energy(&self, q: &[f64; 9]) -> f64 {
+            energy([0, 3, 6].map(|at| point(q, at)), self.0)
+        }
+
+        fn expand(&self, q: &[f64; 9]) -> Local<9> {
+            let mut local = Local { energy: self.energy(q), ..Local::zero() };
+            if let Some((slope, curvature, g)) = expand([0, 3, 6].map(|at| point(q, at)), self.0) {
+                let mut flat = [0.0; 9];
+                (0..3).for_each(|v| put(&mut flat, 3 * v, g[v]));
+                local.gradient = flat.map(|g| slope * g);
+                local.add_outer(curvature, &flat);
+            }
+            local
+        }
+    }
+
+    #[test]
+    fn derivatives_free_crowded_and_folded() {
+        let normal = DVec3::new(0.1, -0.2, 1.0).normalize();
+        for height in [1.0, 0.2, 0.08, 0.03, -0.4] {
+            check_element(&Fold(normal), &[0.1, height, 0.2, 0.0, 0.1, 0.0, 0.9, 0.05, -0.1]);
+        }
+        let crowded = [0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+        assert!(Fold(DVec3::Z).energy(&crowded) > 0.0 && Fold(DVec3::ZERO).energy(&crowded) == 0.0);
+        assert!(Fold(DVec3::Z).expand(&crowded).gradient[1] < 0.0, "more area is better");
+    }
+}

@@ -26,3 +26,44 @@ pub(super) fn expand([i, j, k]: [DVec3; 3]) -> (f64, [DVec3; 3]) {
     let (a, b) = (i - j, k - j);
     (a.dot(b), [b, -a - b, a])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::local::{Element, Local, point, put};
+    use crate::testing::finite_difference::{check_element, check_exact_hessian, samples};
+
+    struct Shear;
+
+    impl Element<9> for Shear {
+        fn energy(&self, q: &[f64; 9]) -> f64 {
+            energy([0, 3, 6].map(|at| point(q, at)))
+        }
+
+        fn expand(&self, q: &[f64; 9]) -> Local<9> {
+            let (c, g) = expand([0, 3, 6].map(|at| point(q, at)));
+            let mut flat = [0.0; 9];
+            (0..3).for_each(|v| put(&mut flat, 3 * v, g[v]));
+            let gradient = flat.map(|g| 0.5 * c * g);
+            let mut local = Local { energy: self.energy(q), gradient, ..Local::zero() };
+            local.add_outer(0.5, &flat);
+            local
+        }
+    }
+
+    #[test]
+    fn derivatives_at_any_angle() {
+        samples::<9>(20).for_each(|q| check_element(&Shear, &q));
+        check_exact_hessian(&Shear, &[0.3, 0.8, 0.0, 0.3, 0.0, 0.0, 1.4, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_force_on_the_corner_is_the_papers() {
+        for q in samples::<9>(10) {
+            let [i, j, k] = [0, 3, 6].map(|at| point(&q, at));
+            let (c, g) = expand([i, j, k]);
+            let paper = -(i - j).dot(k - j) * (j - (i + k) / 2.0);
+            assert!((-0.5 * c * g[1] - paper).length() < 1e-12);
+        }
+    }
+}

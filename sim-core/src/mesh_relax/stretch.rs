@@ -51,3 +51,49 @@ pub(super) fn expand(r: DVec3, rest: f64) -> Expanded {
     let direction = if d > 0.0 { r / d } else { DVec3::ZERO };
     Expanded { direction, slope, along: (1.0 / at).max(rest / (at * at)), across: slope.max(0.0) / at }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::local::{Element, Local, point, put};
+    use crate::testing::finite_difference::{check_element, check_exact_hessian};
+
+    struct Stretch(f64);
+
+    impl Element<3> for Stretch {
+        fn energy(&self, q: &[f64; 3]) -> f64 {
+            energy(point(q, 0), self.0)
+        }
+
+        fn expand(&self, q: &[f64; 3]) -> Local<3> {
+            let e = expand(point(q, 0), self.0);
+            let mut local = Local { energy: self.energy(q), ..Local::zero() };
+            put(&mut local.gradient, 0, e.slope * e.direction);
+            local.add_outer(e.along - e.across, &e.direction.to_array());
+            (0..3).for_each(|i| local.hessian[i][i] += e.across);
+            local
+        }
+    }
+
+    #[test]
+    fn derivatives_from_a_hundredth_to_a_hundred_rest_lengths() {
+        for rest in [0.1, 0.87, 1.15] {
+            for ratio in [0.01, 0.04, 0.06, 0.3, 0.9, 1.1, 3.0, 100.0] {
+                check_element(&Stretch(rest), &(DVec3::new(0.6, -0.48, 0.64) * rest * ratio).to_array());
+            }
+        }
+    }
+
+    #[test]
+    fn the_stiffness_is_the_hessian_at_rest() {
+        check_exact_hessian(&Stretch(0.8), &(DVec3::new(0.6, -0.48, 0.64) * 0.8).to_array());
+    }
+
+    #[test]
+    fn coincident_points_have_finite_energy_and_no_force() {
+        let e = expand(DVec3::ZERO, 1.0);
+        assert!(energy(DVec3::ZERO, 1.0) > 2.0 && energy(DVec3::ZERO, 1.0).is_finite());
+        assert_eq!(e.slope * e.direction, DVec3::ZERO);
+        assert!(e.along.is_finite() && e.across == 0.0);
+    }
+}

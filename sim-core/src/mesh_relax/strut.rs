@@ -72,3 +72,65 @@ pub(super) fn expand(x @ [i, j, k]: [DVec3; 3], rest: f64) -> Expanded {
         e,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::local::{Element, Local, point, put};
+    use crate::testing::finite_difference::{check_element, samples};
+
+    struct Strut(f64);
+
+    impl Element<9> for Strut {
+        fn energy(&self, q: &[f64; 9]) -> f64 {
+            energy([0, 3, 6].map(|at| point(q, at)), self.0)
+        }
+
+        fn expand(&self, q: &[f64; 9]) -> Local<9> {
+            let e = expand([0, 3, 6].map(|at| point(q, at)), self.0);
+            let mut local = Local { energy: self.energy(q), ..Local::zero() };
+            let mut s = [0.0; 9];
+            for v in 0..3 {
+                put(&mut local.gradient, 3 * v, e.gradient[v]);
+                put(&mut s, 3 * v, e.s[v]);
+            }
+            local.add_outer(e.along, &s);
+            for (end, across, direction) in [(0, e.across[0], e.e[0]), (6, e.across[1], e.e[1])] {
+                for (axis, unit) in DVec3::AXES.into_iter().enumerate() {
+                    // Row `axis` of I − eeᵀ.
+                    let row = (unit - direction * direction[axis]) * across;
+                    for (a, sign_a) in [(end, 1.0), (3, -1.0)] {
+                        for (b, sign_b) in [(end, 1.0), (3, -1.0)] {
+                            (0..3).for_each(|k| local.hessian[a + axis][b + k] += sign_a * sign_b * row[k]);
+                        }
+                    }
+                }
+            }
+            local
+        }
+    }
+
+    #[test]
+    fn derivatives_bent_and_folded() {
+        samples::<9>(20).for_each(|q| check_element(&Strut(0.1), &q));
+        // Pressed to under half: r is the rest length and does not move.
+        samples::<9>(20).for_each(|q| check_element(&Strut(20.0), &q));
+    }
+
+    #[test]
+    fn a_straight_wale_feels_nothing_and_a_bent_one_is_pulled_straight() {
+        let (i, k) = (DVec3::ZERO, DVec3::new(0.0, 1.6, 0.0));
+        assert!(energy([i, DVec3::new(0.0, 0.9, 0.0), k], 0.75) < 1e-15);
+        let bent = expand([i, DVec3::new(0.3, 0.8, 0.0), k], 0.75);
+        assert!(bent.gradient[1].x > 0.0, "downhill is back into line");
+        assert!(bent.gradient.iter().sum::<DVec3>().length() < 1e-12);
+    }
+
+    #[test]
+    fn coincident_points_are_finite() {
+        let e = expand([DVec3::ZERO; 3], 0.75);
+        assert!(
+            e.gradient.iter().chain(&e.s).all(|g| g.is_finite()) && e.across.iter().all(|a| a.is_finite())
+        );
+    }
+}

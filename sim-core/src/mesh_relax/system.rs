@@ -326,3 +326,95 @@ fn in_chunks<T: Sync>(items: &[T], of: impl Fn(&T) -> f64 + Sync) -> f64 {
     let parts = items.par_chunks(CHUNK).map(|chunk| chunk.iter().map(&of).sum::<f64>());
     parts.collect::<Vec<f64>>().iter().sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh_relax::params::RestLengths;
+    use crate::noise::unit_hash;
+    use stitch_mesh::edge_counts::StitchSize;
+    use stitch_mesh::pieces::tube;
+
+    struct Case {
+        elements: Elements,
+        system: System<3>,
+        x: Vec<DVec3>,
+        normals: Vec<DVec3>,
+        params: RelaxParams,
+        wale: f64,
+    }
+
+    /// A crumpled tube, with all forces at work.
+    fn case(fold: f64) -> Case {
+        let piece = tube(9, 6, StitchSize::of_width(1e-3)).unwrap();
+        let rest = RestLengths { course: 1.1e-3, wale: 0.8e-3 };
+        let elements = Elements::new(&piece, &rest);
+        let noise = |i: usize| 0.5 * (unit_hash(i as u64) - 0.5);
+        let crumpled = |(v, p): (usize, &DVec3)| {
+            *p / rest.unit() + DVec3::new(noise(3 * v), noise(3 * v + 1), noise(3 * v + 2))
+        };
+        let x: Vec<DVec3> = piece.mesh().positions().iter().enumerate().map(crumpled).collect();
+        let params = RelaxParams { stretch: 1.3, shear: 0.7, wale: 1.9, fold, ..RelaxParams::default() };
+        let wale = rest.wale / rest.unit();
+        let mut system = System::<3>::new(x.len(), &elements, &params, wale);
+        let normals = piece.mesh().vertex_normals();
+        system.assemble(&x, &vec![DVec3::AXES; x.len()], &normals, 0.01);
+        Case { elements, system, x, normals, params, wale }
+    }
+
+    fn direction(count: usize, seed: u64) -> Vec<Small<3>> {
+        let at = |v: usize| [0, 1, 2].map(|d| unit_hash(seed + (3 * v + d) as u64) - 0.5);
+        (0..count).map(at).collect()
+    }
+
+    fn dot(a: &[Small<3>], b: &[Small<3>]) -> f64 {
+        a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| a * b).sum()
+    }
+
+    #[test]
+    fn the_assembled_force_is_the_slope_of_the_energy() {
+        let Case { elements, system, x, normals, params, wale } = case(0.4);
+        let way = direction(x.len(), 7);
+        let energy_at = |t: f64| {
+            let moved: Vec<DVec3> = x.iter().zip(&way).map(|(x, w)| *x + t * DVec3::from_array(*w)).collect();
+            energy(&elements, &params, wale, &moved, &normals)
+        };
+        let h = 1e-4;
+        let slope =
+            (8.0 * (energy_at(h) - energy_at(-h)) - (energy_at(2.0 * h) - energy_at(-2.0 * h))) / (12.0 * h);
+        assert!((slope + dot(&system.force, &way)).abs() < 1e-7 * slope.abs(), "{slope}");
+    }
+
+    #[test]
+    fn forces_balance() {
+        let Case { system, x, .. } = case(0.0);
+        let force = |v: usize| DVec3::from_array(system.force[v]);
+        let (sum, turn) = (0..x.len())
+            .fold((DVec3::ZERO, DVec3::ZERO), |(s, t), v| (s + force(v), t + x[v].cross(force(v))));
+        assert!(sum.length() < 1e-11 && force(0).length() > 0.1, "{sum}");
+        // Folding holds its normals fast and so is left out: it alone turns things.
+        assert!(turn.length() < 1e-11, "{turn}");
+    }
+
+    #[test]
+    fn the_matrix_is_symmetric_and_positive_definite() {
+        let Case { system, x, .. } = case(0.4);
+        let (a, b) = (direction(x.len(), 100), direction(x.len(), 9000));
+        let (mut ka, mut kb) = (a.clone(), a.clone());
+        assert!(system.product(&a, &mut ka) > 0.0 && system.product(&b, &mut kb) > 0.0);
+        assert!((dot(&a, &kb) - dot(&b, &ka)).abs() < 1e-10 * dot(&a, &ka).abs());
+    }
+
+    #[test]
+    fn a_block_times_its_inverse() {
+        let block = [[4.0, 1.0, 0.5], [1.0, 3.0, 0.2], [0.5, 0.2, 2.0]];
+        let inverse = inverted(&block);
+        for i in 0..3 {
+            for j in 0..3 {
+                let product: f64 = (0..3).map(|k| block[i][k] * inverse[k][j]).sum();
+                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14);
+            }
+        }
+        assert!(inverted(&[[0.0; 2]; 2]).as_flattened().iter().all(|v| v.is_finite()));
+    }
+}
