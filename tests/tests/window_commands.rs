@@ -37,14 +37,14 @@ fn the_search_finds_a_command_and_runs_it() {
     window.key(NONE, Key::Enter);
     assert_eq!(window.selected().len(), rows.concat().len());
     window.key(NONE, Key::F3);
-    write(&mut window, "twisted clock");
+    write(&mut window, "twisted count");
     window.key(NONE, Key::ArrowDown);
     window.key(NONE, Key::Enter);
-    assert_eq!(window.stitches(&[rows[0][0]]), ["k-1"], "the second stitch of that name");
+    assert_eq!(window.stitches(&[rows[0][0]]), ["p-1"], "the second stitch of that name");
     window.key(NONE, Key::F3);
     write(&mut window, "knit");
     window.key(NONE, Key::Escape);
-    assert_eq!(window.stitches(&[rows[0][0]]), ["k-1"], "closed without doing anything");
+    assert_eq!(window.stitches(&[rows[0][0]]), ["p-1"], "closed without doing anything");
 }
 
 #[test]
@@ -111,13 +111,13 @@ fn a_click_on_a_problem_selects_and_frames_it() {
 fn the_palette_sets_what_is_selected_or_is_painted_with() {
     let (mut window, rows) = fabric();
     window.click_stitch(rows[1][1], None, NONE);
-    window.press("k-1 · knit, twisted counter-clockwise (k tbl)");
+    window.press("k-1 · knit twisted counter-clockwise");
     assert_eq!(window.stitches(&[rows[1][1]]), ["k-1"]);
-    window.press("d12k · k2tog, leaning right");
+    window.press("d12k · k2tog · knit two together, leaning right");
     assert!(window.says("d12k joins 2 loops below to 1 loop above"), "it says why not");
     window.key(NONE, Key::Escape);
     window.harness.remove_cursor();
-    window.press("p1 · purl, twisted clockwise");
+    window.press("p1 · p tbl · purl through the back loop");
     let [from, to] = [window.at_stitch(rows[2][1], None), window.at_stitch(rows[2][2], None)];
     window.drag(from, to, NONE);
     assert_eq!(window.stitches(&rows[2][1..3]), ["p1", "p1"]);

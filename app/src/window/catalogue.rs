@@ -1,7 +1,4 @@
-//! The stitches of the palette, with the names that knitters use.
-//!
-//! Symbols say which loop lies in front, counted from the left: in a k2tog that is the left one (`d12k`, leaning right), in an
-//! ssk the right one (`d21k`, leaning left).
+//! The stitches of the palette, by groups.
 
 use super::editor::Editor;
 use stitch_mesh::stitch::Stitch;
@@ -12,8 +9,6 @@ pub struct Kind {
     pub group: Group,
     /// Its symbol.
     pub symbol: &'static str,
-    /// Its name.
-    pub name: &'static str,
 }
 
 /// Groups of the palette.
@@ -42,78 +37,87 @@ impl Group {
     ];
 }
 
-const fn kind(group: Group, symbol: &'static str, name: &'static str) -> Kind {
-    Kind { group, symbol, name }
+const fn kind(group: Group, symbol: &'static str) -> Kind {
+    Kind { group, symbol }
 }
 
 /// All kinds.
 pub const KINDS: &[Kind] = &[
-    kind(Group::Plain, "k", "knit"),
-    kind(Group::Plain, "p", "purl"),
-    kind(Group::Plain, "y", "yarn-over, or cast-on"),
-    kind(Group::Twisted, "k1", "knit, twisted clockwise"),
-    kind(Group::Twisted, "k-1", "knit, twisted counter-clockwise (k tbl)"),
-    kind(Group::Twisted, "p1", "purl, twisted clockwise"),
-    kind(Group::Twisted, "p-1", "purl, twisted counter-clockwise (p tbl)"),
-    kind(Group::Twisted, "y1", "yarn-over, twisted clockwise (M1R)"),
-    kind(Group::Twisted, "y-1", "yarn-over, twisted counter-clockwise (M1L)"),
-    kind(Group::Increases, "kp", "kfb: knit and purl into one"),
-    kind(Group::Increases, "ky", "knit, yarn-over"),
-    kind(Group::Increases, "yk", "yarn-over, knit"),
-    kind(Group::Increases, "pk", "pfb: purl and knit into one"),
-    kind(Group::Increases, "py", "purl, yarn-over"),
-    kind(Group::Increases, "yp", "yarn-over, purl"),
-    kind(Group::Increases, "kpk", "k1-p1-k1 into one"),
-    kind(Group::Increases, "kyk", "k1-yo-k1 into one"),
-    kind(Group::Increases, "yky", "yo-k1-yo"),
-    kind(Group::Increases, "kpy", "k1-p1-yo into one"),
-    kind(Group::Increases, "ykp", "yo-k1-p1 into one"),
-    kind(Group::Increases, "pkp", "p1-k1-p1 into one"),
-    kind(Group::Increases, "pyp", "p1-yo-p1 into one"),
-    kind(Group::Increases, "ypy", "yo-p1-yo"),
-    kind(Group::Increases, "pky", "p1-k1-yo into one"),
-    kind(Group::Increases, "ypk", "yo-p1-k1 into one"),
-    kind(Group::Decreases, "d12k", "k2tog, leaning right"),
-    kind(Group::Decreases, "d21k", "ssk, leaning left"),
-    kind(Group::Decreases, "d12p", "p2tog, leaning right"),
-    kind(Group::Decreases, "d21p", "ssp, leaning left"),
-    kind(Group::Decreases, "d123k", "k3tog, leaning right"),
-    kind(Group::Decreases, "d321k", "sssk, leaning left"),
-    kind(Group::Decreases, "d231k", "s2kp, centred: the middle loop in front"),
-    kind(Group::Decreases, "d312k", "sk2p, leaning left"),
-    kind(Group::Decreases, "d132k", "knit 3 together, left loop in front, middle behind"),
-    kind(Group::Decreases, "d213k", "knit 3 together, middle loop in front, right behind"),
-    kind(Group::Decreases, "d123p", "p3tog, leaning right"),
-    kind(Group::Decreases, "d321p", "sssp, leaning left"),
-    kind(Group::Decreases, "d231p", "s2pp, centred: the middle loop in front"),
-    kind(Group::Decreases, "d312p", "sp2p, leaning left"),
-    kind(Group::Decreases, "d132p", "purl 3 together, left loop in front, middle behind"),
-    kind(Group::Decreases, "d213p", "purl 3 together, middle loop in front, right behind"),
-    kind(Group::Special, "d1", "bind-off: a loop gathered on the yarn"),
+    kind(Group::Plain, "k"),
+    kind(Group::Plain, "p"),
+    kind(Group::Plain, "y"),
+    kind(Group::Plain, "d0y"),
+    kind(Group::Twisted, "k1"),
+    kind(Group::Twisted, "k-1"),
+    kind(Group::Twisted, "p1"),
+    kind(Group::Twisted, "p-1"),
+    kind(Group::Twisted, "y1"),
+    kind(Group::Twisted, "y-1"),
+    kind(Group::Increases, "kp"),
+    kind(Group::Increases, "ky"),
+    kind(Group::Increases, "yk"),
+    kind(Group::Increases, "pk"),
+    kind(Group::Increases, "py"),
+    kind(Group::Increases, "yp"),
+    kind(Group::Increases, "kpk"),
+    kind(Group::Increases, "kyk"),
+    kind(Group::Increases, "yky"),
+    kind(Group::Increases, "kpy"),
+    kind(Group::Increases, "ykp"),
+    kind(Group::Increases, "pkp"),
+    kind(Group::Increases, "pyp"),
+    kind(Group::Increases, "ypy"),
+    kind(Group::Increases, "pky"),
+    kind(Group::Increases, "ypk"),
+    kind(Group::Decreases, "d12k"),
+    kind(Group::Decreases, "d21k"),
+    kind(Group::Decreases, "d12p"),
+    kind(Group::Decreases, "d21p"),
+    kind(Group::Decreases, "d123k"),
+    kind(Group::Decreases, "d321k"),
+    kind(Group::Decreases, "d231k"),
+    kind(Group::Decreases, "d312k"),
+    kind(Group::Decreases, "d132k"),
+    kind(Group::Decreases, "d213k"),
+    kind(Group::Decreases, "d123p"),
+    kind(Group::Decreases, "d321p"),
+    kind(Group::Decreases, "d231p"),
+    kind(Group::Decreases, "d312p"),
+    kind(Group::Decreases, "d132p"),
+    kind(Group::Decreases, "d213p"),
+    kind(Group::Special, "s"),
+    kind(Group::Special, "x"),
+    kind(Group::Special, "sk"),
+    kind(Group::Special, "ks"),
+    kind(Group::Special, "d1"),
 ];
 
 impl Kind {
+    /// The stitch. Every symbol is read by a test.
+    fn stitch(&self) -> Option<Stitch> {
+        self.symbol.parse().ok()
+    }
+
+    /// Its abbreviation and name, as in "k2tog · knit two together, leaning right".
+    pub fn name(&self) -> String {
+        let Some(stitch) = self.stitch() else { return self.symbol.to_owned() };
+        let (short, long) = (stitch.abbreviation(), stitch.description());
+        if short == self.symbol { long } else { format!("{short} · {long}") }
+    }
+
     /// Sets the stitches that are meant, or takes it to paint with.
     pub(super) fn choose(&self, editor: &mut Editor) {
-        // Every symbol is read by a test.
-        if let Ok(stitch) = self.symbol.parse() {
+        if let Some(stitch) = self.stitch() {
             editor.use_stitch(stitch);
         }
     }
 }
 
-/// What a knitter calls a stitch, with its symbol: `k2tog (d12k)`; where there is no name, the symbol.
+/// What a knitter calls a stitch, with its symbol: `k2tog (d12k)`, `knit (k)`.
 pub fn describe(stitch: &Stitch) -> String {
-    let symbol = stitch.to_string();
-    match KINDS.iter().find(|k| k.symbol == symbol) {
-        Some(kind) => {
-            let short = kind.name.split([',', ':']).next().unwrap_or(kind.name);
-            let twisted = stitch.ops.len() == 1 && stitch.ops[0].twist != 0;
-            let short = if twisted { kind.name } else { short };
-            format!("{short} ({symbol})")
-        }
-        None => symbol,
-    }
+    let (symbol, short) = (stitch.to_string(), stitch.abbreviation());
+    let name = if short == symbol { stitch.description() } else { short };
+    format!("{name} ({symbol})")
 }
 
 #[cfg(test)]
@@ -125,36 +129,33 @@ mod tests {
     fn every_symbol_is_a_stitch_of_its_group() {
         for kind in KINDS {
             let stitch: Stitch = kind.symbol.parse().unwrap();
-            let group = match (stitch.bottoms(), stitch.tops(), stitch.ops.iter().any(|op| op.twist != 0)) {
-                (1, 1, false) => Group::Plain,
-                (1, 1, true) => Group::Twisted,
-                (1, 2.., _) => Group::Increases,
-                (2.., 1, _) => Group::Decreases,
-                _ => Group::Special,
+            assert_eq!(stitch.to_string(), kind.symbol);
+            let twisted = stitch.ops.iter().any(|op| op.twist != 0);
+            let fits = match kind.group {
+                Group::Plain => stitch.bottoms() <= 1 && stitch.tops() == 1 && !twisted,
+                Group::Twisted => (stitch.bottoms(), stitch.tops()) == (1, 1) && twisted,
+                Group::Increases => stitch.bottoms() == 1 && stitch.tops() > 1,
+                Group::Decreases => stitch.bottoms() > 1 && stitch.tops() == 1,
+                Group::Special => true,
             };
-            assert_eq!(kind.group, group, "{}", kind.symbol);
+            assert!(fits, "{}", kind.symbol);
         }
-        let names: BTreeSet<_> = KINDS.iter().map(|k| k.name).collect();
-        assert_eq!(names.len(), KINDS.len());
+        let symbols: BTreeSet<_> = KINDS.iter().map(|k| k.symbol).collect();
+        assert_eq!(symbols.len(), KINDS.len());
     }
 
     #[test]
     fn table_1_is_all_there() {
         let count = |bottoms, tops| {
-            let has = |k: &&Kind| {
-                let s: Stitch = k.symbol.parse().unwrap();
-                (s.bottoms(), s.tops()) == (bottoms, tops)
-            };
-            KINDS.iter().filter(has).count()
+            let has = |k: &&Kind| k.stitch().is_some_and(|s| (s.bottoms(), s.tops()) == (bottoms, tops));
+            KINDS.iter().filter(has).filter(|k| k.group != Group::Special).count()
         };
-        assert_eq!([count(1, 2), count(1, 3), count(2, 1), count(3, 1)], [6, 9, 4, 12]);
+        assert_eq!([count(1, 2), count(1, 3), count(2, 1), count(3, 1)], [6, 10, 4, 12]);
     }
 
     #[test]
     fn stitches_have_names() {
         let of = |symbol: &str| describe(&symbol.parse().unwrap());
-        assert_eq!(of("d12k"), "k2tog (d12k)");
-        assert_eq!(of("p"), "purl (p)");
-        assert_eq!(of("d1234k"), "d1234k");
+        assert_eq!([of("d12k"), of("p")], ["k2tog (d12k)", "purl (p)"]);
     }
 }

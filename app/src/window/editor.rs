@@ -3,6 +3,7 @@
 //! Each frame it looks whether the document or the simulation has something new, shows it, and turns clicks into requests. It
 //! never waits: the document lives in a [`Session`], the yarn in a [`SimThread`].
 
+use super::forecast::Forecast;
 use super::navigation::Navigation;
 use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
@@ -39,6 +40,7 @@ pub struct Editor {
     pub(super) playing: bool,
     pub(super) panel: panels::State,
     pub(super) search: Option<Search>,
+    pub(super) forecast: Forecast,
     /// Whether a text field had the keys in the last frame.
     pub(super) typing: bool,
     /// Selected and hidden parts of the labelled mesh and of the fabric.
@@ -91,6 +93,7 @@ impl Editor {
             navigation: Navigation::default(),
             playing: false,
             search: None,
+            forecast: Forecast::default(),
             typing: false,
             selections: [Selection::new(Mode::Edge), Selection::new(Mode::Face)],
             faces: Faces::default(),
@@ -292,9 +295,10 @@ impl Editor {
         self.request(Request::SaveScript(path));
     }
 
-    /// Cuts the mesh into stitches of the width in the panel.
+    /// Cuts the mesh into stitches: of the width in the panel where it was changed, or as edges are counted now.
     pub(super) fn tessellate(&mut self) {
-        self.act(Command::Tessellate { width_mm: Some(self.panel.width_mm) });
+        let changed = std::mem::take(&mut self.panel.width_changed);
+        self.act(Command::Tessellate { width_mm: changed.then_some(self.panel.width_mm) });
         self.go_to(Stage::Stitches);
     }
 }

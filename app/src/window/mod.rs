@@ -3,11 +3,13 @@
 mod actions;
 mod catalogue;
 pub mod editor;
+mod forecast;
 mod meant;
 mod navigation;
 mod panels;
 mod picture;
 mod pointer;
+mod runs;
 pub mod screen;
 mod search;
 pub mod selection;

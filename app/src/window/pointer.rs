@@ -118,7 +118,8 @@ fn select(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect, modifie
     }
     let looped = match editor.navigation {
         Navigation::MiddleButton => modifiers.alt,
-        Navigation::Alt => response.double_clicked(),
+        // A click elsewhere shortly before makes three of two.
+        Navigation::Alt => response.double_clicked() || response.triple_clicked(),
     };
     if response.clicked() {
         let mode = editor.selection().mode;

@@ -27,7 +27,7 @@ impl Entry {
     fn name(self) -> String {
         match self {
             Self::Action(action) => action.name.to_owned(),
-            Self::Stitch(kind) => format!("{} · {}", kind.name, kind.symbol),
+            Self::Stitch(kind) => format!("{} · {}", kind.name(), kind.symbol),
         }
     }
 
@@ -95,7 +95,7 @@ pub fn show(editor: &mut Editor, ctx: &egui::Context) {
             let response = ui.add_enabled(blocked.is_none(), button);
             let what = match entry {
                 Entry::Action(action) => action.what,
-                Entry::Stitch(kind) => kind.name,
+                Entry::Stitch(_) => "Sets what is selected; with nothing selected, the stitch to paint with",
             };
             let clicked =
                 response.on_hover_text(what).on_disabled_hover_text(blocked.unwrap_or(what)).clicked();

@@ -64,7 +64,7 @@ pub(super) const ACTIONS: &[Action] = &[
         .key(Modifiers::NONE, Key::P)
         .at(FABRIC)
         .on(On::Faces),
-    Action::new("Yarn-over", "Make stitches yarn-overs", |e| e.use_stitch(Stitch::default_for(0, 1, true)))
+    Action::new("Yarn-over", "Make stitches yarn-overs", yarn_over)
         .key(Modifiers::NONE, Key::Y)
         .at(FABRIC)
         .on(On::Faces),
@@ -112,6 +112,17 @@ fn flip_rows(editor: &mut Editor) {
         }
     }
     editor.act_all(rows);
+}
+
+/// A yarn-over from a loop below and one from nothing are different stitches: whichever has a place here.
+fn yarn_over(editor: &mut Editor) {
+    let meant = editor.faces_meant();
+    let kinds = ["y", "d0y"].into_iter().flat_map(str::parse::<Stitch>);
+    let mut kinds: Vec<Stitch> = kinds.collect();
+    kinds.sort_by_key(|kind| editor.that_take(kind, &meant).is_empty());
+    if let Some(kind) = kinds.into_iter().next() {
+        editor.use_stitch(kind);
+    }
 }
 
 /// Every loop of the chosen stitches takes the next twist after that of the first.

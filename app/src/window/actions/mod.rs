@@ -5,6 +5,7 @@
 //! pointer.
 
 mod edit;
+mod fabric;
 mod select;
 mod view;
 
@@ -98,7 +99,7 @@ impl Action {
 
 /// All actions.
 pub fn all() -> impl Iterator<Item = &'static Action> {
-    [view::ACTIONS, select::ACTIONS, edit::ACTIONS].into_iter().flatten()
+    [view::ACTIONS, select::ACTIONS, edit::ACTIONS, fabric::ACTIONS].into_iter().flatten()
 }
 
 /// The action of a name.

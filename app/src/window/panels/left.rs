@@ -1,6 +1,6 @@
 //! Tools and what they work with, stage by stage.
 
-use super::{palette, patterns, yarn};
+use super::{colour, palette, patterns, tessellation, yarn};
 use crate::drawing::Stage;
 use crate::window::actions::{button, button_as};
 use crate::window::editor::Editor;
@@ -48,20 +48,30 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                 }
                 Stage::Labels => labels(editor, ui),
                 Stage::Stitches => {
-                    palette::show(editor, ui);
+                    fabric(editor, ui);
                     ui.separator();
-                    patterns::show(editor, ui);
+                    relaxing(editor, ui);
                 }
                 Stage::Yarn => {
                     yarn::show(editor, ui);
                     ui.separator();
-                    palette::show(editor, ui);
-                    ui.separator();
-                    patterns::show(editor, ui);
+                    fabric(editor, ui);
                 }
             }
         });
     });
+}
+
+/// Everything that changes the fabric.
+fn fabric(editor: &mut Editor, ui: &mut Ui) {
+    palette::show(editor, ui);
+    button(editor, ui, "Fill region");
+    ui.separator();
+    patterns::show(editor, ui);
+    ui.separator();
+    colour::show(editor, ui);
+    ui.separator();
+    marks(editor, ui);
 }
 
 /// What is selected, in words.
@@ -97,11 +107,38 @@ fn labels(editor: &mut Editor, ui: &mut Ui) {
     button(editor, ui, "Flip row");
     button(editor, ui, "Clear labels");
     ui.separator();
+    tessellation::show(editor, ui);
+}
+
+/// Numbers of relaxing.
+fn relaxing(editor: &mut Editor, ui: &mut Ui) {
+    ui.heading("Evenness");
     ui.horizontal(|ui| {
-        let label = ui.label("Stitch width");
-        let width =
-            egui::DragValue::new(&mut editor.panel.width_mm).range(0.5..=100.0).speed(0.1).suffix(" mm");
-        ui.add(width).labelled_by(label.id).on_hover_text("How wide a stitch is to be");
+        for (i, (name, what)) in [
+            ("Aspect", "Height of a stitch over its width at rest"),
+            ("Fill", "How much of the surface stitches fill at rest"),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let label = ui.label(name);
+            let most = if i == 0 { 3.0 } else { 1.0 };
+            let field = egui::DragValue::new(&mut editor.panel.relax[i]).range(0.2..=most).speed(0.01);
+            ui.add(field).labelled_by(label.id).on_hover_text(what);
+        }
     });
-    button(editor, ui, "Tessellate");
+    ui.checkbox(&mut editor.panel.relax_on_surface, "On the surface").on_hover_text(
+        "Stitches stay on the smooth surface of the input mesh; otherwise they find a shape of their own",
+    );
+    button(editor, ui, "Relax mesh");
+}
+
+/// What is marked on edges.
+fn marks(editor: &mut Editor, ui: &mut Ui) {
+    ui.heading("Edges");
+    ui.horizontal_wrapped(|ui| {
+        for name in ["Cable", "Sew", "Unsew", "Live loops", "Spiral"] {
+            button(editor, ui, name);
+        }
+    });
 }

@@ -1,5 +1,6 @@
 //! The panels around the viewport.
 
+mod colour;
 mod history;
 pub mod left;
 mod palette;
@@ -7,11 +8,14 @@ mod patterns;
 mod problems;
 pub mod right;
 pub mod status;
+mod tessellation;
 pub mod top;
 mod yarn;
 
 use super::view::View;
 use sim_core::Material;
+use sim_core::mesh_relax::RelaxParams;
+use stitch_mesh::dye::Dye;
 
 /// What the panels remember between frames.
 pub struct State {
@@ -27,6 +31,14 @@ pub struct State {
     pub brush_radius: f32,
     /// What the palette is searched for.
     pub palette_filter: String,
+    /// Whether the stitch size field has been changed since it was last tessellated or an edge was counted by hand.
+    pub width_changed: bool,
+    /// The colour to dye with.
+    pub dye: Dye,
+    /// Height over width of a stitch at rest, and how much of the surface stitches fill.
+    pub relax: [f64; 2],
+    /// Whether relaxed stitches stay on the surface of the input mesh.
+    pub relax_on_surface: bool,
     /// Numbers of the alternations.
     pub alternation: patterns::Numbers,
 }
@@ -39,6 +51,10 @@ impl State {
             width_mm: 1e3 * view.project.size.width,
             aspect: 4.0 / 3.0,
             material: None,
+            width_changed: view.project.fabric.is_none(),
+            dye: Dye([0x00, 0x72, 0xb2]),
+            relax: [RelaxParams::default().aspect, RelaxParams::default().fill],
+            relax_on_surface: true,
             brush_radius: 30.0,
             palette_filter: String::new(),
             alternation: patterns::Numbers::default(),

@@ -22,7 +22,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find a stitch"));
     });
     let wanted = editor.panel.palette_filter.trim().to_lowercase();
-    let shown = |k: &&Kind| k.symbol.contains(&wanted) || k.name.to_lowercase().contains(&wanted);
+    let shown = |k: &&Kind| k.symbol.contains(&wanted) || k.name().to_lowercase().contains(&wanted);
     for (group, heading) in Group::ALL {
         let kinds: Vec<&Kind> = KINDS.iter().filter(|k| k.group == group).filter(shown).collect();
         if kinds.is_empty() {
@@ -48,10 +48,10 @@ fn stitch(editor: &mut Editor, ui: &mut Ui, kind: &'static Kind) {
         egui::Button::new(text).fill(color(kind.symbol)).stroke(stroke).min_size(egui::vec2(44.0, 22.0));
     let response = ui.add(button);
     response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{} · {}", kind.symbol, kind.name))
+        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{} · {}", kind.symbol, kind.name()))
     });
     let what = "sets what is selected; with nothing selected, the stitch to paint with";
-    if response.on_hover_text(format!("{} ({})\n{what}", kind.name, kind.symbol)).clicked() {
+    if response.on_hover_text(format!("{} ({})\n{what}", kind.name(), kind.symbol)).clicked() {
         kind.choose(editor);
     }
 }
