@@ -19,13 +19,22 @@ pub struct Document {
     undone: Vec<Step>,
 }
 
-/// A command and the project on its other side: before it when done, after it when undone.
+/// Commands that are done and undone together, never none, and the project on their other side: before them when done, after
+/// them when undone.
 #[derive(Clone, Debug)]
 struct Step {
-    command: Command,
+    commands: Vec<Command>,
     project: Project,
     /// Which faces came through the command, if it has changed the faces of the stitch mesh.
     survivors: Option<Arc<Survivors>>,
+}
+
+impl Step {
+    fn name(&self) -> String {
+        let more = self.commands.len() - 1;
+        let first = self.commands.first().map(Command::name).unwrap_or_default();
+        if more == 0 { first } else { format!("{first} and {more} more") }
+    }
 }
 
 impl Document {
@@ -44,27 +53,43 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<()> {
-        let (after, survivors) = command.perform(&self.project)?;
-        let before = std::mem::replace(&mut self.project, after);
-        self.done.push(Step { command, project: before, survivors: survivors.map(Arc::new) });
-        self.undone.clear();
+        let done = command.perform(&self.project)?;
+        self.keep(command, done, false);
         Ok(())
     }
 
-    /// Does a command as part of the last one, as a brush does that has reached one more face: there is still one step to
-    /// undo. A command that is not of the same kind is a step of its own.
+    /// Does a command as part of the last step, as a brush does that has reached one more face: there is still one step to
+    /// undo.
     ///
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn amend(&mut self, command: Command) -> Result<()> {
-        match self.done.last_mut().and_then(|last| Some((merge(&last.command, &command)?, last))) {
-            Some((merged, last)) => {
-                self.project = command.apply(&self.project)?;
-                last.command = merged;
-                self.undone.clear();
-                Ok(())
-            }
-            None => self.apply(command),
+        let done = command.perform(&self.project)?;
+        self.keep(command, done, true);
+        Ok(())
+    }
+
+    /// Takes over what a command has made of the project, worked out elsewhere; as a step of its own or as part of the last.
+    pub(crate) fn keep(
+        &mut self,
+        command: Command,
+        (after, survivors): (Project, Option<Survivors>),
+        amends: bool,
+    ) {
+        let before = std::mem::replace(&mut self.project, after);
+        self.undone.clear();
+        let survivors = survivors.map(Arc::new);
+        let Some(step) = self.done.last_mut().filter(|_| amends) else {
+            self.done.push(Step { commands: vec![command], project: before, survivors });
+            return;
+        };
+        step.survivors = match (step.survivors.take(), survivors) {
+            (Some(first), Some(second)) => Some(Arc::new(through_both(&first, &second))),
+            (first, second) => first.or(second),
+        };
+        match step.commands.last_mut().and_then(|last| Some((merge(last, &command)?, last))) {
+            Some((both, last)) => *last = both,
+            None => step.commands.push(command),
         }
     }
 
@@ -88,23 +113,28 @@ impl Document {
 
     /// Goes to the other side of a step. `was` tells which face of the project now each face there is.
     fn swap(&mut self, step: Step, was: Option<&[Option<FaceId>]>) -> Step {
-        let Step { command, project: mut restored, survivors } = step;
+        let Step { commands, project: mut restored, survivors } = step;
         // Edits are undone, time is not: the yarn stays where it has got to, unless its place was the edit.
-        if command != Command::ResetYarn {
+        if !commands.contains(&Command::ResetYarn) {
             restored.keep_yarn_of(&self.project, was);
         }
         let project = std::mem::replace(&mut self.project, restored);
-        Step { command, project, survivors }
+        Step { commands, project, survivors }
     }
 
     /// Commands done so far, oldest first.
-    pub fn done(&self) -> impl ExactSizeIterator<Item = &Command> {
-        self.done.iter().map(|s| &s.command)
+    pub fn done(&self) -> impl Iterator<Item = &Command> {
+        self.done.iter().flat_map(|s| &s.commands)
     }
 
-    /// The command that [`Self::redo`] would do.
-    pub fn next_redo(&self) -> Option<&Command> {
-        self.undone.last().map(|s| &s.command)
+    /// Names of the steps done, oldest first.
+    pub fn steps(&self) -> impl ExactSizeIterator<Item = String> {
+        self.done.iter().map(Step::name)
+    }
+
+    /// Names of the steps that were taken back, the one that [`Self::redo`] would do first.
+    pub fn undone(&self) -> impl ExactSizeIterator<Item = String> {
+        self.undone.iter().rev().map(Step::name)
     }
 
     /// Takes over where the simulation has brought the yarn. No step of the history: time is not undone, edits are. A state
@@ -118,6 +148,13 @@ impl Document {
             fabric.facts = facts;
         }
     }
+}
+
+/// What comes through two edits, one after the other.
+fn through_both(first: &Survivors, second: &Survivors) -> Survivors {
+    let vertices = first.vertices.iter().map(|v| v.and_then(|v| *second.vertices.get(v.index())?));
+    let faces = first.faces.iter().map(|f| f.and_then(|f| *second.faces.get(f.index())?));
+    Survivors { vertices: vertices.collect(), faces: faces.collect() }
 }
 
 /// One command that does what two of the same brush or slider did.
@@ -197,12 +234,27 @@ mod tests {
     }
 
     #[test]
+    fn commands_of_one_step_stay_in_the_script_and_are_undone_together() {
+        let mut document = document();
+        let set =
+            |face, symbol: &str| Command::SetStitch { faces: vec![face], stitch: symbol.parse().unwrap() };
+        document.apply(set(3, "k1")).unwrap();
+        document.amend(set(4, "p")).unwrap();
+        assert_eq!(document.steps().collect::<Vec<_>>(), ["Set 1 stitch to k1 and 1 more"]);
+        assert_eq!(document.done().count(), 2);
+        assert!(document.undo() && !document.undo());
+        assert_eq!((purls(&document), document.undone().len()), (0, 1));
+        assert!(document.redo());
+        assert_eq!(purls(&document), 1);
+    }
+
+    #[test]
     fn a_failed_command_changes_nothing() {
         let mut document = document();
         let error =
             document.apply(Command::SetStitch { faces: vec![0, 99], stitch: Stitch::purl() }).unwrap_err();
         assert_eq!(error.to_string(), "there is no face 99: the faces are 0–23");
-        assert_eq!((purls(&document), document.done().len()), (0, 0));
+        assert_eq!((purls(&document), document.done().count()), (0, 0));
         assert!(
             document.apply(Command::SetStitch { faces: vec![0], stitch: "kp".parse().unwrap() }).is_err()
         );

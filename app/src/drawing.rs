@@ -5,7 +5,7 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use render::{Drawing, Faces, Lines, Polygon, Segment, Solid, Solids, palette};
 use sim_core::{Body, Scene, curves};
-use stitch_mesh::ids::EdgeId;
+use stitch_mesh::ids::{EdgeId, FaceId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::stitch_mesh::StitchMesh;
@@ -28,16 +28,28 @@ impl Stage {
     pub const ALL: [Self; 4] = [Self::Mesh, Self::Labels, Self::Stitches, Self::Yarn];
 }
 
+/// Which faces show.
+pub type Shown<'a> = &'a dyn Fn(FaceId) -> bool;
+
 /// The picture of one stage.
 ///
 /// # Errors
 /// The stage has not been reached yet.
 pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
+    drawing_where(project, stage, &|_| true)
+}
+
+/// The picture of one stage, without the faces that are not `shown` (of a mesh; yarn passes from face to face). They have a
+/// polygon without corners, so that polygons keep the numbers of their faces.
+///
+/// # Errors
+/// As [`drawing`].
+pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Result<Drawing> {
     let labelled = &project.labelled;
     Ok(match stage {
-        Stage::Mesh => mesh_drawing(labelled.mesh()),
-        Stage::Labels => label_drawing(labelled),
-        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches),
+        Stage::Mesh => mesh_drawing(labelled.mesh(), shown),
+        Stage::Labels => label_drawing(labelled, shown),
+        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown),
         Stage::Yarn => {
             let fabric = project.fabric()?;
             let yarn = curves(&fabric.net, &fabric.state(), project.material.drawn_radius);
@@ -47,8 +59,8 @@ pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
 }
 
 /// The polygons of a mesh, coloured face by face.
-pub fn faces(mesh: &PolygonMesh, color: impl Fn(usize) -> [f32; 3]) -> Faces {
-    let vertices = |f| mesh.face_vertices(f).map(|v| v.0).collect();
+fn faces(mesh: &PolygonMesh, shown: Shown<'_>, color: impl Fn(usize) -> [f32; 3]) -> Faces {
+    let vertices = |f| if shown(f) { mesh.face_vertices(f).map(|v| v.0).collect() } else { Vec::new() };
     Faces {
         positions: mesh.positions().iter().map(|p| p.as_vec3()).collect(),
         polygons: mesh.faces().map(|f| Polygon { vertices: vertices(f), color: color(f.index()) }).collect(),
@@ -60,31 +72,38 @@ pub fn edge_line(mesh: &PolygonMesh, edge: EdgeId, color: [f32; 3], width: f32) 
     Segment { ends: mesh.edge_ends(edge).map(|v| mesh.position(v).as_vec3()), color, width }
 }
 
-fn mesh_drawing(mesh: &PolygonMesh) -> Drawing {
-    let lines = mesh.edges().map(|e| edge_line(mesh, e, palette::UNLABELLED_EDGE, 1.5));
+/// Edges of which a face shows.
+fn shown_edges(mesh: &PolygonMesh, shown: Shown<'_>) -> impl Iterator<Item = EdgeId> {
+    mesh.edges().filter(move |e| {
+        let (first, second) = mesh.edge_sides(*e);
+        [Some(first), second].into_iter().flatten().any(|h| shown(mesh.face(h)))
+    })
+}
+
+fn mesh_drawing(mesh: &PolygonMesh, shown: Shown<'_>) -> Drawing {
+    let lines = shown_edges(mesh, shown).map(|e| edge_line(mesh, e, palette::UNLABELLED_EDGE, 1.5));
     Drawing {
-        faces: faces(mesh, |_| palette::UNLABELLED_FACE),
+        faces: faces(mesh, shown, |_| palette::UNLABELLED_FACE),
         lines: Lines { segments: lines.collect() },
         ..Drawing::default()
     }
 }
 
 /// Rows in colours, course edges and wale edges in two more, an arrow up each wale.
-fn label_drawing(labelled: &LabelledMesh) -> Drawing {
+fn label_drawing(labelled: &LabelledMesh, shown: Shown<'_>) -> Drawing {
     let mesh = labelled.mesh();
     let mut row_of = vec![None; mesh.face_count()];
     for (r, row) in labelled.rows().iter().enumerate() {
         row.faces.iter().for_each(|f| row_of[f.index()] = Some(r));
     }
-    let mut segments: Vec<Segment> = mesh
-        .edges()
+    let mut segments: Vec<Segment> = shown_edges(mesh, shown)
         .map(|e| match labelled.label(e) {
             Some(EdgeLabel::Course) => edge_line(mesh, e, palette::COURSE_EDGE, 3.0),
             Some(EdgeLabel::Wale) => edge_line(mesh, e, palette::WALE_EDGE, 2.0),
             None => edge_line(mesh, e, palette::UNLABELLED_EDGE, 1.5),
         })
         .collect();
-    for face in mesh.faces() {
+    for face in mesh.faces().filter(|f| shown(*f)) {
         let Some(wales) = labelled.wales(face) else { continue };
         let middle = |h| (mesh.position(mesh.origin(h)) + mesh.position(mesh.tip(h))) / 2.0;
         let mean = |points: Vec<DVec3>, or: DVec3| match points.len() {
@@ -107,22 +126,22 @@ fn label_drawing(labelled: &LabelledMesh) -> Drawing {
         }
     }
     let color = |f: usize| row_of[f].map_or(palette::UNLABELLED_FACE, palette::row);
-    Drawing { faces: faces(mesh, color), lines: Lines { segments }, ..Drawing::default() }
+    Drawing { faces: faces(mesh, shown, color), lines: Lines { segments }, ..Drawing::default() }
 }
 
-fn stitch_drawing(stitches: &StitchMesh) -> Drawing {
+fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
     let mesh = stitches.mesh();
     let mut row_of = vec![0; mesh.face_count()];
     for (r, row) in stitches.rows().iter().enumerate() {
         row.faces.iter().for_each(|f| row_of[f.index()] = r);
     }
     let symbols: Vec<String> = stitches.stitches().iter().map(ToString::to_string).collect();
-    let lines = mesh.edges().map(|e| {
+    let lines = shown_edges(mesh, shown).map(|e| {
         let wale = stitches.is_wale(mesh.edge_sides(e).0);
         edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })
     });
     Drawing {
-        faces: faces(mesh, |f| palette::stitch(&symbols[f], row_of[f])),
+        faces: faces(mesh, shown, |f| palette::stitch(&symbols[f], row_of[f])),
         lines: Lines { segments: lines.collect() },
         ..Drawing::default()
     }

@@ -35,6 +35,7 @@ mod shadow;
 mod solids;
 mod surface;
 mod viewport;
+mod visible;
 mod yarn;
 
 pub use camera::{Bounds, Camera, NamedView, Ray};
@@ -47,3 +48,4 @@ pub use renderer::{Quality, Renderer};
 pub use scene::Scene;
 pub use solids::{Solid, Solids};
 pub use viewport::Viewport;
+pub use visible::Visible;

@@ -110,6 +110,7 @@ impl Renderer {
         self.surfaces.draw_solids(&mut pass, &scene.solids);
         pass.set_bind_group(0, &viewport.plain_frame, &[]);
         self.lines.draw(&mut pass, &scene.lines);
+        self.lines.draw(&mut pass, &scene.marks);
         drop(pass);
 
         if frame.occlusion_radius > 0.0 {

@@ -15,6 +15,7 @@ pub struct Scene {
     pub(crate) faces: SurfaceMesh,
     pub(crate) solids: SurfaceMesh,
     pub(crate) lines: LineMesh,
+    pub(crate) marks: LineMesh,
     pub(crate) yarn: YarnMesh,
     face_bounds: Option<Bounds>,
     solid_bounds: Option<Bounds>,
@@ -33,13 +34,14 @@ impl Scene {
             faces: SurfaceMesh::new(),
             solids: SurfaceMesh::new(),
             lines: LineMesh::new(),
+            marks: LineMesh::new(),
             yarn: YarnMesh::new(),
             face_bounds: None,
             solid_bounds: None,
         }
     }
 
-    /// Replaces everything.
+    /// Replaces everything but the marks.
     pub fn set(&mut self, gpu: &Gpu, drawing: &Drawing) -> Result<(), RenderError> {
         self.set_faces(gpu, &drawing.faces)?;
         self.set_lines(gpu, &drawing.lines)?;
@@ -56,6 +58,11 @@ impl Scene {
     /// Replaces the lines.
     pub fn set_lines(&mut self, gpu: &Gpu, lines: &Lines) -> Result<(), RenderError> {
         self.lines.set(gpu, lines)
+    }
+
+    /// Replaces the marks: lines over everything else that come and go with the pointer, however many other lines there are.
+    pub fn set_marks(&mut self, gpu: &Gpu, marks: &Lines) -> Result<(), RenderError> {
+        self.marks.set(gpu, marks)
     }
 
     /// Replaces the bodies.

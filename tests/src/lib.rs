@@ -8,6 +8,7 @@
 )]
 
 pub mod fabrics;
+pub mod window;
 
 use render::Gpu;
 use serde_json::Value;

@@ -3,20 +3,25 @@
 //! Each frame it looks whether the document or the simulation has something new, shows it, and turns clicks into requests. It
 //! never waits: the document lives in a [`Session`], the yarn in a [`SimThread`].
 
-use super::panels;
+use super::forecast::Forecast;
+use super::navigation::Navigation;
+use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
-use super::session::{Request, Session, View};
-use super::tools::Tool;
+use super::search::Search;
+use super::selection::{Mode, Selection};
+use super::session::{Request, Session};
+use super::view::View;
+use super::{actions, panels};
 use crate::command::Command;
-use crate::drawing::{Stage, drawing, solids};
+use crate::drawing::Stage;
 use crate::project::Project;
 use anyhow::Result;
-use egui::{Key, KeyboardShortcut, Modifiers};
 use glam::{DVec3, Vec3};
-use render::{Bounds, Camera, Drawing, Faces, Lines, NamedView};
+use render::{Bounds, Camera, Faces, NamedView};
 use sim_core::{Material, Pin, Scene, SimCommand, SimThread, Snapshot};
 use std::path::PathBuf;
 use std::sync::Arc;
+use stitch_mesh::ids::HalfEdgeId;
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
@@ -28,18 +33,24 @@ pub struct Editor {
     pub(super) view: Arc<View>,
     pub(super) stage: Stage,
     pub(super) tool: Tool,
+    pub(super) gesture: Option<Gesture>,
     pub(super) brush: Stitch,
     pub(super) camera: Camera,
+    pub(super) navigation: Navigation,
     pub(super) playing: bool,
     pub(super) panel: panels::State,
-    /// What the screen shows beside yarn, for picking.
+    pub(super) search: Option<Search>,
+    pub(super) forecast: Forecast,
+    /// Whether a text field had the keys in the last frame.
+    pub(super) typing: bool,
+    /// Selected and hidden parts of the labelled mesh and of the fabric.
+    pub(super) selections: [Selection; 2],
+    /// What the screen shows beside yarn, for picking; polygons and their sides are those of the mesh.
     pub(super) faces: Faces,
-    pub(super) base_lines: Lines,
-    /// What the pointer was over when the overlay was made.
-    pub(super) hovered: Option<(usize, usize)>,
-    /// Whether a brush stroke is under way, and what it has reached.
-    pub(super) stroke: Option<Vec<u32>>,
-    pub(super) grabbed: Option<Pin>,
+    /// The side of a face that the pointer is nearest to, and where it points.
+    pub(super) under: Option<(HalfEdgeId, Vec3)>,
+    /// What the marks on the screen were made for; none where they are out of date.
+    pub(super) marked: Option<Option<HalfEdgeId>>,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     shown: Option<(u64, Stage)>,
     /// The net that the simulation has, how often it had been placed, and material and scene.
@@ -75,15 +86,19 @@ impl Editor {
             screen,
             view,
             stage,
-            tool: Tool::of(stage).first().map_or(Tool::Fill, |(tool, ..)| *tool),
+            tool: Tool::Select,
+            gesture: None,
             brush: Stitch::purl(),
             camera: Camera::default(),
+            navigation: Navigation::default(),
             playing: false,
+            search: None,
+            forecast: Forecast::default(),
+            typing: false,
+            selections: [Selection::new(Mode::Edge), Selection::new(Mode::Face)],
             faces: Faces::default(),
-            base_lines: Lines::default(),
-            hovered: None,
-            stroke: None,
-            grabbed: None,
+            under: None,
+            marked: None,
             snapshot: None,
             shown: None,
             loaded: None,
@@ -98,12 +113,13 @@ impl Editor {
     /// One frame.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.take_news();
-        self.shortcuts(ui.ctx());
-        panels::top(self, ui);
-        panels::status(self, ui);
-        panels::left(self, ui);
-        panels::right(self, ui);
+        actions::shortcuts(self, ui.ctx());
+        panels::top::show(self, ui);
+        panels::status::show(self, ui);
+        panels::left::show(self, ui);
+        panels::right::show(self, ui);
         super::viewport::show(self, ui);
+        super::search::show(self, ui.ctx());
         if self.session.is_busy() {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
         }
@@ -141,12 +157,11 @@ impl Editor {
         self.sim.send(if playing { SimCommand::Play } else { SimCommand::Pause });
     }
 
-    /// Goes to another stage; tools that make no sense there are put down.
+    /// Goes to another stage; what is in the hand is put down.
     pub(super) fn go_to(&mut self, stage: Stage) {
-        self.stage = stage;
-        let tools = Tool::of(stage);
-        if let (false, Some((first, ..))) = (tools.iter().any(|(t, ..)| *t == self.tool), tools.first()) {
-            self.tool = *first;
+        if std::mem::replace(&mut self.stage, stage) != stage {
+            self.take(Tool::Select);
+            self.under = None;
         }
     }
 
@@ -170,7 +185,7 @@ impl Editor {
         Bounds::of(mesh.positions().iter().map(|p| p.as_vec3()))
     }
 
-    fn yarn_state(&self, fabric: &crate::project::Fabric) -> Arc<YarnState> {
+    pub(super) fn yarn_state(&self, fabric: &crate::project::Fabric) -> Arc<YarnState> {
         match &self.snapshot {
             Some(s) if s.state.fits(&fabric.net) => Arc::new(s.state.clone()),
             _ => fabric.state(),
@@ -188,6 +203,7 @@ impl Editor {
                     && view.project.labelled == self.view.project.labelled;
             }
             self.error = view.message.clone().err();
+            self.forget_parts(&view.project);
             self.view = view;
             self.load_yarn();
         } else if self.shown.is_none() {
@@ -246,84 +262,11 @@ impl Editor {
         self.simulated = Some(wants);
     }
 
-    /// Puts the stage on the screen.
-    fn show_stage(&mut self) {
-        let stage =
-            if self.view.project.fabric.is_none() && matches!(self.stage, Stage::Stitches | Stage::Yarn) {
-                Stage::Labels
-            } else {
-                self.stage
-            };
-        let drawing = match stage {
-            Stage::Yarn => {
-                // Curves come with the snapshots, made in the simulation's thread.
-                let yarn = self.snapshot.as_ref().map(|s| s.curves.clone()).unwrap_or_default();
-                Drawing { yarn, solids: solids(&self.view.project.scene), ..Drawing::default() }
-            }
-            stage => drawing(&self.view.project, stage).unwrap_or_default(),
-        };
-        if let Some(screen) = &mut self.screen
-            && let Err(error) = screen.set(&drawing)
-        {
-            self.error = Some(format!("{error:#}"));
-        }
-        self.base_lines = drawing.lines;
-        self.faces = drawing.faces;
-        self.hovered = None;
-        if stage == Stage::Yarn {
-            self.faces = self.loop_faces();
-        }
-    }
-
-    fn show_yarn(&mut self) {
-        let Some(snapshot) = self.snapshot.clone() else { return };
-        if let Some(screen) = &mut self.screen
-            && let Err(error) = screen.set_yarn(&snapshot.curves)
-        {
-            self.error = Some(format!("{error:#}"));
-        }
-        self.faces = self.loop_faces();
-    }
-
-    /// A quadrilateral over every stitch, where the yarn is now: what the brush hits in the yarn. The nodes of a stitch span its
-    /// middle (see `stitch_mesh::lay`); the quadrilateral goes on to its edges, so that neighbours leave no gap.
-    fn loop_faces(&self) -> Faces {
-        let Some(fabric) = &self.view.project.fabric else { return Faces::default() };
-        let state = self.yarn_state(fabric);
-        let count = fabric.stitches.mesh().face_count();
-        let mut corners: Vec<Vec<Vec3>> = vec![Vec::new(); count];
-        for (node, position) in fabric.net.nodes.iter().zip(&state.position) {
-            if let Some(face) = node.face {
-                corners[face.index()].push(position.as_vec3());
-            }
-        }
-        let mut faces = Faces::default();
-        for corners in corners {
-            // Four nodes an operation, as LL, LU, RU, RL; a gathering stitch has others and is left as small as it is.
-            let outline = match corners[..] {
-                [ll, lu, .., ru, rl] => {
-                    let ops = (corners.len() / 4) as f32;
-                    let across = (rl - ll) / (1.0 - 0.4 / ops);
-                    let up = ((lu + ru) - (ll + rl)) / 2.0 / 0.4;
-                    let foot = (ll + rl) / 2.0 - 0.1 * up;
-                    let (left, right) = (foot - across / 2.0, foot + across / 2.0);
-                    vec![left, right, right + up, left + up]
-                }
-                _ => corners,
-            };
-            let first = faces.positions.len() as u32;
-            faces.positions.extend(outline);
-            let vertices = (first..faces.positions.len() as u32).collect();
-            faces.polygons.push(render::Polygon { vertices, color: [0.0; 3] });
-        }
-        faces
-    }
-
     /// Sends the scene with the grabbed node added to its pins, or without.
     pub(super) fn pull(&mut self, pin: Option<Pin>) {
         let mut scene = self.view.project.scene.clone();
         scene.pins.extend(pin);
-        self.grabbed = pin;
+        self.gesture = pin.map(Gesture::Grab);
         self.sim.send(SimCommand::SetScene(scene));
     }
 
@@ -335,34 +278,6 @@ impl Editor {
         nodes.min_by(|a, b| a.1.distance(point).total_cmp(&b.1.distance(point))).map(|(i, p)| (i as u32, *p))
     }
 
-    fn shortcuts(&mut self, ctx: &egui::Context) {
-        let pressed =
-            |modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
-        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
-            self.request(Request::Redo);
-        }
-        if pressed(Modifiers::COMMAND, Key::Z) {
-            self.request(Request::Undo);
-        }
-        if pressed(Modifiers::COMMAND, Key::S) {
-            self.save();
-        }
-        if ctx.egui_wants_keyboard_input() {
-            return;
-        }
-        if pressed(Modifiers::NONE, Key::Space) {
-            self.set_playing(!self.playing);
-        }
-        if pressed(Modifiers::NONE, Key::F) {
-            self.frame(None);
-        }
-        for (key, stage) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4].into_iter().zip(Stage::ALL) {
-            if pressed(Modifiers::NONE, key) {
-                self.go_to(stage);
-            }
-        }
-    }
-
     /// Saves under the name in the path field.
     pub(super) fn save(&mut self) {
         let mut path = PathBuf::from(self.panel.path.trim());
@@ -372,5 +287,18 @@ impl Editor {
         }
         path.set_extension("purl");
         self.request(Request::Save(path));
+    }
+
+    /// Saves the history beside the project.
+    pub(super) fn save_script(&mut self) {
+        let path = PathBuf::from(self.panel.path.trim()).with_extension("jsonl");
+        self.request(Request::SaveScript(path));
+    }
+
+    /// Cuts the mesh into stitches: of the width in the panel where it was changed, or as edges are counted now.
+    pub(super) fn tessellate(&mut self) {
+        let changed = std::mem::take(&mut self.panel.width_changed);
+        self.act(Command::Tessellate { width_mm: changed.then_some(self.panel.width_mm) });
+        self.go_to(Stage::Stitches);
     }
 }

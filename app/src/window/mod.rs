@@ -1,10 +1,21 @@
 //! The window: winit's events in, egui and the renderer out. All that is in the window is in [`editor`].
 
+mod actions;
+mod catalogue;
 pub mod editor;
+mod forecast;
+mod meant;
+mod navigation;
 mod panels;
+mod picture;
+mod pointer;
+mod runs;
 pub mod screen;
+mod search;
+pub mod selection;
 pub mod session;
-pub mod tools;
+mod surface;
+pub mod view;
 mod viewport;
 
 use crate::bundled;

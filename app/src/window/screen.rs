@@ -3,7 +3,7 @@
 use anyhow::Result;
 use egui_wgpu::Renderer as Painter;
 use egui_wgpu::wgpu::FilterMode;
-use render::{Camera, Drawing, Gpu, Lines, Quality, Renderer, Scene, Solids, Viewport};
+use render::{Camera, Drawing, Faces, Gpu, Lines, Quality, Renderer, Scene, Solids, Viewport};
 use std::sync::Arc;
 use stitch_mesh::yarn_curves::YarnCurves;
 
@@ -41,12 +41,20 @@ impl Screen {
         Ok(self.scene.set(&self.gpu, drawing)?)
     }
 
-    /// Replaces lines only: the overlay under the pointer.
+    /// Replaces the faces only: what is selected has other colours.
     ///
     /// # Errors
     /// As [`Self::set`].
-    pub fn set_lines(&mut self, lines: &Lines) -> Result<()> {
-        Ok(self.scene.set_lines(&self.gpu, lines)?)
+    pub fn set_faces(&mut self, faces: &Faces) -> Result<()> {
+        Ok(self.scene.set_faces(&self.gpu, faces)?)
+    }
+
+    /// Replaces the marks: lines around what is selected and what the pointer is over.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_marks(&mut self, marks: &Lines) -> Result<()> {
+        Ok(self.scene.set_marks(&self.gpu, marks)?)
     }
 
     /// Replaces the yarn only.

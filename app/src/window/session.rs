@@ -1,30 +1,40 @@
 //! The document in a thread of its own, so that the window never waits for an edit, a file or a large mesh.
 //!
 //! Requests go in, in order; the newest [`View`] comes out. The window draws what it last saw.
+//!
+//! Long work can be cancelled. A command makes a new project and leaves the old one alone, so whatever it is, it runs in yet
+//! another thread and its result is simply not taken over: the document is as it was, at once, while the work runs out with
+//! nobody waiting for it.
 
+use super::view::View;
 use crate::command::{Command, write_script};
 use crate::document::Document;
 use crate::files;
-use crate::inspect::{Inspection, inspect};
 use crate::project::Project;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 use stitch_mesh::yarn_net::YarnState;
 
+/// How often work that goes on is looked at, for whether somebody has cancelled it.
+const LOOK: Duration = Duration::from_millis(10);
+
 /// What a session can be asked to do.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Request {
     /// Do a command.
     Do(Command),
-    /// Do a command as part of the last one (a brush stroke).
+    /// Do a command as part of the last step (a brush stroke).
     Amend(Command),
-    /// Take back the last command.
+    /// Take back the last step.
     Undo,
     /// Do again what was taken back.
     Redo,
+    /// Go back or forward in the history until so many steps are done.
+    GoTo(usize),
     /// Open a project or mesh in place of this one.
     Open(PathBuf),
     /// Save the project.
@@ -33,26 +43,28 @@ pub enum Request {
     SaveScript(PathBuf),
 }
 
-/// What the window sees of the document.
+impl Request {
+    /// What is going on while it is carried out.
+    fn doing(&self) -> String {
+        match self {
+            Self::Do(command) | Self::Amend(command) => command.name(),
+            Self::Undo => "Undo".into(),
+            Self::Redo => "Redo".into(),
+            Self::GoTo(_) => "Go through the history".into(),
+            Self::Open(path) => format!("Open {}", path.display()),
+            Self::Save(path) | Self::SaveScript(path) => format!("Save {}", path.display()),
+        }
+    }
+}
+
+/// Work that is going on.
 #[derive(Clone, Debug)]
-pub struct View {
-    /// Counts the changes.
-    pub revision: u64,
-    /// Counts how often the document itself has put the yarn somewhere (laid it anew, or took that back); otherwise the
-    /// simulation knows best where it is.
-    pub placed: u64,
-    /// The project.
-    pub project: Project,
-    /// Facts about it.
-    pub facts: Inspection,
-    /// The file it was read from or written to.
-    pub path: Option<PathBuf>,
-    /// Names of the commands done, oldest first.
-    pub done: Vec<String>,
-    /// Name of the command that redo would do.
-    pub redo: Option<String>,
-    /// What the last request came to: done, or why not.
-    pub message: Result<String, String>,
+pub struct Work {
+    /// What it is.
+    pub name: String,
+    /// Since when.
+    pub since: Instant,
+    cancelled: bool,
 }
 
 /// A running session. Dropping it lets the thread finish what it was asked and end.
@@ -60,6 +72,7 @@ pub struct Session {
     requests: Sender<(Request, Option<Arc<YarnState>>)>,
     latest: Arc<Mutex<Arc<View>>>,
     waiting: Arc<AtomicUsize>,
+    work: Arc<Mutex<Option<Work>>>,
 }
 
 impl Session {
@@ -73,19 +86,27 @@ impl Session {
         wake: Box<dyn Fn() + Send>,
     ) -> std::io::Result<Self> {
         let (requests, received) = channel::<(Request, Option<Arc<YarnState>>)>();
-        let mut worker = Worker { document: Document::new(project), path, revision: 0, placed: 0 };
-        let latest = Arc::new(Mutex::new(Arc::new(worker.view(Ok(String::new())))));
+        let work = Arc::new(Mutex::new(None));
+        let mut worker = Worker {
+            document: Document::new(project),
+            path,
+            revision: 0,
+            placed: 0,
+            work: Arc::clone(&work),
+            latest: None,
+        };
+        let latest = Arc::new(Mutex::new(worker.view(Ok(String::new()))));
         let waiting = Arc::new(AtomicUsize::new(0));
         let (slot, count) = (Arc::clone(&latest), Arc::clone(&waiting));
         std::thread::Builder::new().name("document".to_owned()).spawn(move || {
             for (request, yarn) in received {
                 let view = worker.carry_out(request, yarn);
-                *slot.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(view);
+                *slot.lock().unwrap_or_else(PoisonError::into_inner) = view;
                 count.fetch_sub(1, Ordering::Release);
                 wake();
             }
         })?;
-        Ok(Self { requests, latest, waiting })
+        Ok(Self { requests, latest, waiting, work })
     }
 
     /// Asks for something. `yarn` is where the simulation has brought the yarn, if it is running.
@@ -119,6 +140,18 @@ impl Session {
     pub fn is_busy(&self) -> bool {
         self.waiting.load(Ordering::Acquire) > 0
     }
+
+    /// What is going on just now.
+    pub fn work(&self) -> Option<Work> {
+        self.work.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Gives up what is going on; the document stays as it was before.
+    pub fn cancel(&self) {
+        if let Some(work) = &mut *self.work.lock().unwrap_or_else(PoisonError::into_inner) {
+            work.cancelled = true;
+        }
+    }
 }
 
 struct Worker {
@@ -126,50 +159,51 @@ struct Worker {
     path: Option<PathBuf>,
     revision: u64,
     placed: u64,
+    work: Arc<Mutex<Option<Work>>>,
+    latest: Option<Arc<View>>,
 }
 
 impl Worker {
-    fn carry_out(&mut self, request: Request, yarn: Option<Arc<YarnState>>) -> View {
+    fn carry_out(&mut self, request: Request, yarn: Option<Arc<YarnState>>) -> Arc<View> {
+        let doing = Work { name: request.doing(), since: Instant::now(), cancelled: false };
+        *self.work.lock().unwrap_or_else(PoisonError::into_inner) = Some(doing);
         if let Some(yarn) = yarn {
             self.document.set_state(yarn, None);
         }
-        let places = match &request {
-            Request::Do(command) => Some(command),
-            Request::Undo => self.document.done().last(),
-            Request::Redo => self.document.next_redo(),
-            _ => None,
-        } == Some(&Command::ResetYarn);
+        let resets = |document: &Document| document.done().filter(|c| **c == Command::ResetYarn).count();
+        let before = resets(&self.document);
         let message = self.try_to(request).map_err(|e| format!("{e:#}"));
-        self.placed += u64::from(places);
+        // Laid anew, or that taken back: the document has put the yarn somewhere itself.
+        self.placed += u64::from(resets(&self.document) != before);
         self.revision += 1;
-        self.view(message)
+        let view = self.view(message);
+        *self.work.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        view
     }
 
     fn try_to(&mut self, request: Request) -> Result<String> {
         match request {
-            Request::Do(command) => {
-                let name = command.name();
-                self.document.apply(command)?;
-                Ok(name)
-            }
-            Request::Amend(command) => {
-                self.document.amend(command)?;
-                Ok(self.document.done().last().map(Command::name).unwrap_or_default())
-            }
+            Request::Do(command) => self.apply(command, false),
+            Request::Amend(command) => self.apply(command, true),
             Request::Undo => {
-                let name =
-                    self.document.done().last().map(Command::name).context("there is nothing to undo")?;
+                let name = self.document.steps().last().context("there is nothing to undo")?;
                 self.document.undo();
                 Ok(format!("Undone: {name}"))
             }
             Request::Redo => {
-                let name =
-                    self.document.next_redo().map(Command::name).context("there is nothing to redo")?;
+                let name = self.document.undone().next().context("there is nothing to redo")?;
                 self.document.redo();
                 Ok(format!("Redone: {name}"))
             }
+            Request::GoTo(steps) => {
+                while self.document.steps().len() > steps && self.document.undo() {}
+                while self.document.steps().len() < steps && self.document.redo() {}
+                let at = self.document.steps().last();
+                Ok(at.map_or_else(|| "Back at the beginning".into(), |name| format!("At: {name}")))
+            }
             Request::Open(path) => {
-                self.document = Document::new(Project::open_any(&path)?);
+                let file = path.clone();
+                self.document = Document::new(self.unless_cancelled(move || Project::open_any(&file))?);
                 let message = format!("Opened {}", path.display());
                 self.path = Some(path);
                 Ok(message)
@@ -187,16 +221,46 @@ impl Worker {
         }
     }
 
-    fn view(&self, message: Result<String, String>) -> View {
-        View {
-            revision: self.revision,
-            placed: self.placed,
-            project: self.document.project().clone(),
-            facts: inspect(self.document.project()),
-            path: self.path.clone(),
-            done: self.document.done().map(Command::name).collect(),
-            redo: self.document.next_redo().map(Command::name),
-            message,
+    fn apply(&mut self, command: Command, amends: bool) -> Result<String> {
+        let (doing, before) = (command.clone(), self.document.project().clone());
+        let after = self.unless_cancelled(move || doing.perform(&before))?;
+        let name = command.name();
+        self.document.keep(command, after, amends);
+        Ok(name)
+    }
+
+    /// What `work` comes to, unless somebody cancels it first.
+    fn unless_cancelled<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T> + Send + 'static,
+    ) -> Result<T> {
+        let (done, result) = channel();
+        std::thread::Builder::new().name("command".to_owned()).spawn(move || {
+            // Nobody waits any more where the work has been cancelled.
+            let _ = done.send(work());
+        })?;
+        loop {
+            match result.recv_timeout(LOOK) {
+                Ok(result) => return result,
+                Err(RecvTimeoutError::Disconnected) => bail!("the work ended without a result"),
+                Err(RecvTimeoutError::Timeout) => {
+                    let work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+                    if work.as_ref().is_some_and(|w| w.cancelled) {
+                        bail!("cancelled");
+                    }
+                }
+            }
         }
+    }
+
+    fn view(&mut self, message: Result<String, String>) -> Arc<View> {
+        let view = Arc::new(View::of(
+            &self.document,
+            (self.revision, self.placed, self.path.clone()),
+            message,
+            self.latest.as_deref(),
+        ));
+        self.latest = Some(Arc::clone(&view));
+        view
     }
 }

@@ -1,0 +1,144 @@
+//! Tools and what they work with, stage by stage.
+
+use super::{colour, palette, patterns, tessellation, yarn};
+use crate::drawing::Stage;
+use crate::window::actions::{button, button_as};
+use crate::window::editor::Editor;
+use crate::window::pointer::Tool;
+use crate::window::selection::Mode;
+use egui::Ui;
+
+/// Shows the panel.
+pub fn show(editor: &mut Editor, ui: &mut Ui) {
+    egui::Panel::left("tools").exact_size(216.0).resizable(false).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                let tools: &[(&str, Tool)] = match editor.stage {
+                    Stage::Mesh => &[("Select", Tool::Select), ("Brush select", Tool::Brush)],
+                    Stage::Labels => &[("Select", Tool::Select)],
+                    Stage::Stitches => {
+                        &[("Select", Tool::Select), ("Brush select", Tool::Brush), ("Paint", Tool::Paint)]
+                    }
+                    Stage::Yarn => &[
+                        ("Select", Tool::Select),
+                        ("Brush select", Tool::Brush),
+                        ("Paint", Tool::Paint),
+                        ("Grab", Tool::Grab),
+                    ],
+                };
+                for (name, tool) in tools {
+                    button_as(editor, ui, name, name, editor.tool == *tool);
+                }
+            });
+            if editor.tool == Tool::Brush {
+                let label = ui.label("Radius");
+                let radius = egui::Slider::new(&mut editor.panel.brush_radius, 5.0..=200.0);
+                ui.add(radius.suffix(" px")).labelled_by(label.id);
+            }
+            ui.horizontal(|ui| {
+                for (mode, name) in Mode::ALL {
+                    button_as(editor, ui, name, name, editor.selection().mode == mode);
+                }
+            });
+            selected(editor, ui);
+            ui.separator();
+            match editor.stage {
+                Stage::Mesh => {
+                    ui.label("The mesh as it was read. Go on to Labels.");
+                }
+                Stage::Labels => labels(editor, ui),
+                Stage::Stitches => {
+                    fabric(editor, ui);
+                    ui.separator();
+                    relaxing(editor, ui);
+                }
+                Stage::Yarn => {
+                    yarn::show(editor, ui);
+                    ui.separator();
+                    fabric(editor, ui);
+                }
+            }
+        });
+    });
+}
+
+/// Everything that changes the fabric.
+fn fabric(editor: &mut Editor, ui: &mut Ui) {
+    palette::show(editor, ui);
+    button(editor, ui, "Fill region");
+    ui.separator();
+    patterns::show(editor, ui);
+    ui.separator();
+    colour::show(editor, ui);
+    ui.separator();
+    marks(editor, ui);
+}
+
+/// What is selected, in words.
+fn selected(editor: &Editor, ui: &mut Ui) {
+    let selection = editor.selection();
+    let count = |n: usize, one: &str| match n {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        n => Some(format!("{n} {one}s")),
+    };
+    let parts = [
+        count(selection.faces.len(), "face"),
+        count(selection.edges.len(), "edge"),
+        (!selection.hidden.is_empty()).then(|| format!("({} hidden)", selection.hidden.len())),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let text = if selection.is_empty() { "Nothing selected".to_owned() } else { "Selected:".to_owned() };
+    ui.label(egui::RichText::new(format!("{text} {}", parts.join(", "))).weak());
+}
+
+fn labels(editor: &mut Editor, ui: &mut Ui) {
+    button(editor, ui, "Label automatically");
+    ui.label("Selected edges");
+    ui.horizontal(|ui| {
+        button_as(editor, ui, "Label course", "Course", false);
+        button_as(editor, ui, "Label wale", "Wale", false);
+        button_as(editor, ui, "Clear label", "None", false);
+    });
+    ui.horizontal(|ui| {
+        button(editor, ui, "Fill row");
+        button(editor, ui, "Fill onwards");
+    });
+    button(editor, ui, "Flip row");
+    button(editor, ui, "Clear labels");
+    ui.separator();
+    tessellation::show(editor, ui);
+}
+
+/// Numbers of relaxing.
+fn relaxing(editor: &mut Editor, ui: &mut Ui) {
+    ui.heading("Evenness");
+    ui.horizontal(|ui| {
+        for (i, (name, what)) in [
+            ("Aspect", "Height of a stitch over its width at rest"),
+            ("Fill", "How much of the surface stitches fill at rest"),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let label = ui.label(name);
+            let most = if i == 0 { 3.0 } else { 1.0 };
+            let field = egui::DragValue::new(&mut editor.panel.relax[i]).range(0.2..=most).speed(0.01);
+            ui.add(field).labelled_by(label.id).on_hover_text(what);
+        }
+    });
+    ui.checkbox(&mut editor.panel.relax_on_surface, "On the surface").on_hover_text(
+        "Stitches stay on the smooth surface of the input mesh; otherwise they find a shape of their own",
+    );
+    button(editor, ui, "Relax mesh");
+}
+
+/// What is marked on edges.
+fn marks(editor: &mut Editor, ui: &mut Ui) {
+    ui.heading("Edges");
+    ui.horizontal_wrapped(|ui| {
+        for name in ["Cable", "Sew", "Unsew", "Live loops", "Spiral"] {
+            button(editor, ui, name);
+        }
+    });
+}

@@ -1,0 +1,63 @@
+//! The panels around the viewport.
+
+mod colour;
+mod history;
+pub mod left;
+mod palette;
+mod patterns;
+mod problems;
+pub mod right;
+pub mod status;
+mod tessellation;
+pub mod top;
+mod yarn;
+
+use super::view::View;
+use sim_core::Material;
+use sim_core::mesh_relax::RelaxParams;
+use stitch_mesh::dye::Dye;
+
+/// What the panels remember between frames.
+pub struct State {
+    /// The path field.
+    pub path: String,
+    /// The stitch size field [mm].
+    pub width_mm: f64,
+    /// Width over height of the viewport.
+    pub aspect: f32,
+    /// The yarn while a slider moves.
+    pub material: Option<Material>,
+    /// Radius of the selecting brush [px].
+    pub brush_radius: f32,
+    /// What the palette is searched for.
+    pub palette_filter: String,
+    /// Whether the stitch size field has been changed since it was last tessellated or an edge was counted by hand.
+    pub width_changed: bool,
+    /// The colour to dye with.
+    pub dye: Dye,
+    /// Height over width of a stitch at rest, and how much of the surface stitches fill.
+    pub relax: [f64; 2],
+    /// Whether relaxed stitches stay on the surface of the input mesh.
+    pub relax_on_surface: bool,
+    /// Numbers of the alternations.
+    pub alternation: patterns::Numbers,
+}
+
+impl State {
+    /// Fields as they stand for a freshly opened document.
+    pub fn of(view: &View) -> Self {
+        Self {
+            path: view.path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(),
+            width_mm: 1e3 * view.project.size.width,
+            aspect: 4.0 / 3.0,
+            material: None,
+            width_changed: view.project.fabric.is_none(),
+            dye: Dye([0x00, 0x72, 0xb2]),
+            relax: [RelaxParams::default().aspect, RelaxParams::default().fill],
+            relax_on_surface: true,
+            brush_radius: 30.0,
+            palette_filter: String::new(),
+            alternation: patterns::Numbers::default(),
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! What keeps the mesh from being knitted; a click shows where.
+
+use crate::drawing::Stage;
+use crate::problems::Problem;
+use crate::window::editor::Editor;
+use crate::window::selection::{Change, Picked};
+use egui::{RichText, Ui};
+use stitch_mesh::ids::FaceId;
+
+/// Problems shown; the rest waits until these are mended.
+const MOST: usize = 40;
+
+/// Shows them.
+pub fn show(editor: &mut Editor, ui: &mut Ui) {
+    ui.heading("Problems");
+    let view = editor.view.clone();
+    let problems = &view.facts.problems;
+    if problems.is_empty() {
+        ui.label("none");
+        return;
+    }
+    egui::ScrollArea::vertical().id_salt("problems").max_height(200.0).show(ui, |ui| {
+        for problem in problems.iter().take(MOST) {
+            let text = RichText::new(format!("{}: {}", problem.r#where, problem.what));
+            let button = egui::Button::new(text.color(ui.visuals().warn_fg_color)).wrap().frame(false);
+            if ui.add(button).on_hover_text("Select it and look at it").clicked() {
+                show_where(editor, problem);
+            }
+        }
+    });
+    if problems.len() > MOST {
+        ui.label(RichText::new(format!("and {} more", problems.len() - MOST)).weak());
+    }
+}
+
+fn show_where(editor: &mut Editor, problem: &Problem) {
+    let Some(face) = problem.r#where.strip_prefix("face ").and_then(|n| n.parse().ok()) else { return };
+    editor.go_to(Stage::Labels);
+    editor.select(Picked::Faces(vec![FaceId(face)]), Change::Replace);
+    editor.frame_selected();
+}

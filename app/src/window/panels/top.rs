@@ -1,0 +1,73 @@
+//! Files, undo, stages, play, views, settings.
+
+use crate::drawing::Stage;
+use crate::window::actions::{button, button_as};
+use crate::window::editor::Editor;
+use crate::window::navigation::Navigation;
+use crate::window::session::Request;
+use egui::Ui;
+use std::path::PathBuf;
+
+/// Shows the panel.
+pub fn show(editor: &mut Editor, ui: &mut Ui) {
+    egui::Panel::top("top").show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            if ui
+                .button("Open…")
+                .on_hover_text("Open a project or a mesh; without a file dialog, write its path in the field")
+                .clicked()
+            {
+                open(editor);
+            }
+            let field =
+                egui::TextEdit::singleline(&mut editor.panel.path).hint_text("path").desired_width(180.0);
+            let response =
+                ui.add(field).on_hover_text("Where the project is saved; Enter opens what is there");
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Path"));
+            if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+                editor.request(Request::Open(PathBuf::from(editor.panel.path.trim())));
+            }
+            button(editor, ui, "Save");
+            ui.separator();
+            button_as(editor, ui, "Undo", "⟲ Undo", false);
+            button_as(editor, ui, "Redo", "⟳ Redo", false);
+            ui.separator();
+            for (stage, name) in Stage::ALL.into_iter().zip(["Mesh", "Labels", "Stitches", "Yarn"]) {
+                button_as(editor, ui, name, name, editor.stage == stage);
+            }
+            ui.separator();
+            button_as(editor, ui, "Play", if editor.playing { "⏸ Pause" } else { "▶ Play" }, false);
+            ui.separator();
+            for name in ["Front", "Back"] {
+                button(editor, ui, name);
+            }
+            ui.menu_button("View", |ui| {
+                for name in ["Frame all", "Frame selected", "Left", "Right", "Top", "Three-quarter"] {
+                    button(editor, ui, name);
+                }
+            })
+            .response
+            .on_hover_text("Where to look from");
+            ui.menu_button("⚙ Settings", |ui| {
+                ui.label("Moving the view");
+                for (navigation, name, what) in Navigation::ALL {
+                    ui.radio_value(&mut editor.navigation, navigation, name).on_hover_text(what);
+                }
+            })
+            .response
+            .on_hover_text("How the mouse moves the view");
+            button_as(editor, ui, "Search commands", "🔍 Search", false);
+        });
+    });
+}
+
+fn open(editor: &mut Editor) {
+    // The portal's dialog has an event loop of its own; it runs beside the window and answers as a request.
+    let field = PathBuf::from(editor.panel.path.trim());
+    let current = editor.view.path.as_ref() == Some(&field);
+    if !current && field.is_file() {
+        editor.request(Request::Open(field));
+    } else {
+        editor.session.ask_for_file();
+    }
+}

@@ -1,0 +1,190 @@
+//! What the screen is given: the stage, the selection on it, and the mark under the pointer.
+
+use super::editor::Editor;
+use super::selection::Mode;
+use crate::drawing::{Stage, drawing_where, solids};
+use glam::Vec3;
+use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
+use stitch_mesh::ids::FaceId;
+
+/// Width of lines around what is selected and around what the pointer is over [px].
+const SELECTED_WIDTH: f32 = 4.0;
+const HOVERED_WIDTH: f32 = 3.0;
+/// How much of the colour of a selection its faces take on: enough to see, and the stitch's own colour still shows.
+const TINT: f32 = 0.45;
+/// How far before and behind the yarn its marks lie, in radii of the yarn: loops reach two radii from the middle.
+const LIFT: f64 = 2.6;
+
+impl Editor {
+    /// Puts the stage on the screen.
+    pub(super) fn show_stage(&mut self) {
+        let stage = self.shown_stage();
+        let drawing = match stage {
+            Stage::Yarn => {
+                // Curves come with the snapshots, made in the simulation's thread.
+                let yarn = self.snapshot.as_ref().map(|s| s.curves.clone()).unwrap_or_default();
+                Drawing { yarn, solids: solids(&self.view.project.scene), ..Drawing::default() }
+            }
+            stage => {
+                let hidden = &self.selection().hidden;
+                drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f)).unwrap_or_default()
+            }
+        };
+        if let Some(screen) = &mut self.screen
+            && let Err(error) = screen.set(&drawing)
+        {
+            self.error = Some(format!("{error:#}"));
+        }
+        self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
+        self.show_selection();
+    }
+
+    /// Puts yarn that has moved on the screen.
+    pub(super) fn show_yarn(&mut self) {
+        let Some(snapshot) = self.snapshot.clone() else { return };
+        if let Some(screen) = &mut self.screen
+            && let Err(error) = screen.set_yarn(&snapshot.curves)
+        {
+            self.error = Some(format!("{error:#}"));
+        }
+        self.faces = self.loop_faces();
+        self.marked = None;
+    }
+
+    /// Tints what is selected.
+    pub(super) fn show_selection(&mut self) {
+        self.marked = None;
+        if self.shown_stage() == Stage::Yarn {
+            return; // yarn has its outline only
+        }
+        let mut tinted = self.faces.clone();
+        for face in &self.selection().faces {
+            if let Some(polygon) = tinted.polygons.get_mut(face.index()) {
+                let mix = |own: f32, tint: f32| own + (tint - own) * TINT;
+                polygon.color = [0, 1, 2].map(|i| mix(polygon.color[i], palette::SELECTED[i]));
+            }
+        }
+        if let Some(screen) = &mut self.screen
+            && let Err(error) = screen.set_faces(&tinted)
+        {
+            self.error = Some(format!("{error:#}"));
+        }
+    }
+
+    /// Draws the outlines of what is selected and of what the pointer is over, where either has changed.
+    pub(super) fn show_marks(&mut self) {
+        let over = self.under.map(|(half, _)| half).filter(|_| self.stage != Stage::Mesh);
+        if self.marked == Some(over) {
+            return;
+        }
+        self.marked = Some(over);
+        let surface = self.surface();
+        let mesh = surface.mesh();
+        let mut segments = Vec::new();
+        let lift = match self.shown_stage() {
+            Stage::Yarn => (LIFT * self.view.project.material.drawn_radius) as f32,
+            _ => 0.0,
+        };
+        let mut mark = |half: stitch_mesh::ids::HalfEdgeId, color, width| {
+            let face = mesh.face(half);
+            let side = half.index() - mesh.first_half_edge(face).index();
+            let corners: Vec<Vec3> = match self.faces.polygons.get(face.index()) {
+                Some(polygon) if !polygon.vertices.is_empty() => self.faces.corners(face.index()).collect(),
+                _ => return,
+            };
+            let ends = [corners[side], corners[(side + 1) % corners.len()]];
+            if lift == 0.0 {
+                segments.push(Segment { ends, color, width });
+            } else {
+                let normal = normal(&corners) * lift;
+                let moved = [normal, -normal].map(|n| ends.map(|p| p + n));
+                segments.extend(moved.map(|ends| Segment { ends, color, width }));
+            }
+        };
+        for edge in self.selection().outline(mesh) {
+            let (first, second) = mesh.edge_sides(edge);
+            // Of a yarn, each side has a place of its own; the mark belongs to the selected face.
+            let selected = |h| self.selection().faces.contains(&mesh.face(h));
+            let side = second.filter(|h| selected(*h) && !selected(first)).unwrap_or(first);
+            mark(side, palette::SELECTED, SELECTED_WIDTH);
+        }
+        if let Some(half) = over {
+            let on_edge = self.selection().mode == Mode::Edge;
+            let sides = mesh.face_half_edges(mesh.face(half)).filter(|h| !on_edge || *h == half);
+            sides.for_each(|h| mark(h, palette::HOVERED, HOVERED_WIDTH));
+        }
+        if let Some(screen) = &mut self.screen {
+            // Marks that could not be shown are not worth a message of their own: the next drawing says why.
+            let _ = screen.set_marks(&Lines { segments });
+        }
+    }
+
+    /// The stage that can be shown: without stitches, the labels they are made from.
+    fn shown_stage(&self) -> Stage {
+        match self.stage {
+            Stage::Stitches | Stage::Yarn if self.view.project.fabric.is_none() => Stage::Labels,
+            stage => stage,
+        }
+    }
+
+    /// A polygon over every stitch, where the yarn is now, side by side like the face in the stitch mesh: what the pointer hits
+    /// in the yarn. The nodes of a stitch span its middle (see `stitch_mesh::lay`); the polygon goes on to its edges, so that
+    /// neighbours leave no gap.
+    fn loop_faces(&self) -> Faces {
+        let Some(fabric) = &self.view.project.fabric else { return Faces::default() };
+        let state = self.yarn_state(fabric);
+        let mesh = fabric.stitches.mesh();
+        let mut nodes: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); mesh.face_count()];
+        for (node, position) in fabric.net.nodes.iter().zip(&state.position) {
+            if let Some(face) = node.face {
+                nodes[face.index()].push([position.as_vec3(), node.position.as_vec3()]);
+            }
+        }
+        let mut faces = Faces::default();
+        for (face, nodes) in mesh.faces().zip(nodes) {
+            let stitch = fabric.stitches.stitch(face);
+            let outline = match nodes[..] {
+                // Four nodes an operation, as LL, LU, RU, RL.
+                [[ll, _], [lu, _], .., [ru, _], [rl, _]] if nodes.len() == 4 * stitch.tops() => {
+                    let across = (rl - ll) / (1.0 - 0.4 / stitch.tops() as f32);
+                    let up = ((lu + ru) - (ll + rl)) / 2.0 / 0.4;
+                    let left = (ll + rl) / 2.0 - 0.1 * up - across / 2.0;
+                    outline(left, across, up, stitch.bottoms(), stitch.tops())
+                }
+                _ => carried(mesh.face_vertices(face).map(|v| mesh.position(v).as_vec3()), &nodes),
+            };
+            let first = faces.positions.len() as u32;
+            faces.positions.extend(outline);
+            let vertices = (first..faces.positions.len() as u32).collect();
+            faces.polygons.push(Polygon { vertices, color: [0.0; 3] });
+        }
+        faces
+    }
+
+    /// The corners of a face as it is shown.
+    pub(super) fn shown_corners(&self, face: FaceId) -> Vec<Vec3> {
+        let shown = self.faces.polygons.get(face.index()).is_some();
+        if shown { self.faces.corners(face.index()).collect() } else { Vec::new() }
+    }
+}
+
+/// Corners of a parallelogram with so many edges below and above, in the order of a face: from the left along its bottoms, up,
+/// back along its tops.
+fn outline(left: Vec3, across: Vec3, up: Vec3, bottoms: usize, tops: usize) -> Vec<Vec3> {
+    let part = |i: usize, n: usize| if n == 0 { 0.5 } else { i as f32 / n as f32 };
+    let below = (0..=bottoms).map(|i| left + across * part(i, bottoms));
+    let above = (0..=tops).rev().map(|i| left + up + across * part(i, tops));
+    below.chain(above).collect()
+}
+
+/// The corners of a face moved as the nodes of its yarn have moved in the mean. Each node is `[now, as laid]`.
+fn carried(corners: impl Iterator<Item = Vec3>, nodes: &[[Vec3; 2]]) -> Vec<Vec3> {
+    let moved = nodes.iter().map(|[now, laid]| now - laid).sum::<Vec3>() / nodes.len().max(1) as f32;
+    corners.map(|p| p + moved).collect()
+}
+
+/// Unit normal of a polygon; zero if it has no area.
+fn normal(corners: &[Vec3]) -> Vec3 {
+    let n = corners.len();
+    (0..n).map(|i| corners[i].cross(corners[(i + 1) % n])).sum::<Vec3>().normalize_or_zero()
+}

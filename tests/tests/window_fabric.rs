@@ -1,0 +1,141 @@
+//! Cables, colours, regions, edge counts and relaxing, in the window.
+
+use app::command::Command;
+use egui::{Key, Modifiers};
+use stitch_mesh::dye::Dye;
+use stitch_mesh::ids::FaceId;
+use tests::window::{Window, knitted, swatch};
+
+const NONE: Modifiers = Modifiers::NONE;
+
+fn fabric() -> (Window, Vec<Vec<u32>>) {
+    let mut window = Window::new(knitted());
+    window.press("Stitches");
+    window.press("Front");
+    let rows = window.editor().project().fabric().unwrap().stitches.rows();
+    let rows = rows.into_iter().map(|r| r.faces.into_iter().map(|f| f.0).collect()).collect();
+    (window, rows)
+}
+
+#[test]
+fn a_cable_crosses_left_then_right_then_not() {
+    let (mut window, rows) = fabric();
+    window.key(NONE, Key::Num1);
+    for (i, face) in rows[3][2..6].iter().enumerate() {
+        window.click_stitch(*face, Some(0), if i == 0 { NONE } else { Modifiers::SHIFT });
+    }
+    let cables = |window: &Window| {
+        let fabric = window.editor().project().fabric().unwrap();
+        let of = |c: &stitch_mesh::cable::Cable| (c.strands.clone(), c.front.clone());
+        fabric.stitches.marks().cables.iter().map(of).collect::<Vec<_>>()
+    };
+    window.key(NONE, Key::X);
+    assert_eq!(cables(&window), [(vec![2, 2], vec![1, 0])]);
+    window.keep("cable");
+    window.key(NONE, Key::X);
+    assert_eq!(cables(&window), [(vec![2, 2], vec![0, 1])]);
+    window.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(cables(&window), [(vec![2, 2], vec![1, 0])], "turning it round was one step");
+    window.key(NONE, Key::X);
+    window.key(NONE, Key::X);
+    assert_eq!(cables(&window).len(), 0);
+}
+
+#[test]
+fn colours_and_regions_go_over_what_is_selected() {
+    let (mut window, rows) = fabric();
+    window.click_stitch(rows[2][3], Some(1), Modifiers::ALT);
+    window.press("Vermilion");
+    window.press("Dye the selection");
+    let dyes = window.editor().project().fabric().unwrap().stitches.dyes().to_vec();
+    let dyed: Vec<u32> =
+        (0..dyes.len() as u32).filter(|f| dyes[*f as usize] == Dye([0xd5, 0x5e, 0])).collect();
+    let mut row = rows[2].clone();
+    row.sort_unstable();
+    assert_eq!(dyed, row);
+
+    window.key(NONE, Key::P);
+    window.key(NONE, Key::Escape);
+    window.harness.remove_cursor();
+    window.press("k1 · k tbl · knit through the back loop");
+    window.key(NONE, Key::Escape);
+    window.harness.hover_at(window.at_stitch(rows[0][1], None));
+    window.key(NONE, Key::F);
+    assert_eq!(window.stitches(&[rows[0][0], rows[1][5], rows[2][3], rows[3][3]]), ["k1", "k1", "p", "k"]);
+}
+
+#[test]
+fn patterns_keep_to_the_selection() {
+    let (mut window, rows) = fabric();
+    window.click_stitch(rows[2][3], Some(1), Modifiers::ALT);
+    window.press("Rib");
+    assert!("kkppkkppkkppkkpp".starts_with(&window.stitches(&rows[2]).concat()));
+    assert!(window.stitches(&rows[1]).iter().all(|s| s == "k"));
+}
+
+#[test]
+fn counts_are_changed_at_edges_and_their_consequences_are_told_before() {
+    let labelled = Command::Autolabel.apply(&swatch()).unwrap();
+    let mut window = Window::new(Command::Tessellate { width_mm: Some(16.0) }.apply(&labelled).unwrap());
+    window.press("Labels");
+    window.press("Front");
+    let count = |window: &Window| window.editor().project().fabric().unwrap().stitches.stitches().len();
+    let before = count(&window);
+    window.click_side(0, 0, NONE);
+    window.press("+");
+    window.wait("forecast", |_| true);
+    let said = |window: &Window| window.says("1 increases") || window.says("1 decreases");
+    for _ in 0..200 {
+        if said(&window) {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        window.rest();
+    }
+    assert!(said(&window), "the consequences");
+    window.keep("counts");
+    assert_eq!(count(&window), before, "nothing is done yet");
+    window.press("Tessellate");
+    let stitches = &window.editor().project().fabric().unwrap().stitches;
+    let uneven = stitches.stitches().iter().filter(|s| s.bottoms() != s.tops()).count();
+    assert_eq!(uneven, 1);
+}
+
+#[test]
+fn relaxing_moves_the_stitches_and_keeps_them() {
+    let (mut window, _) = fabric();
+    let mesh = |window: &Window| window.editor().project().fabric().unwrap().stitches.mesh().clone();
+    let before = mesh(&window);
+    window.press("Relax mesh");
+    let after = mesh(&window);
+    assert!(before.positions() != after.positions());
+    assert_eq!(before.face_lists(), after.face_lists());
+    assert!(window.says("Relax"), "in the history");
+}
+
+#[test]
+fn long_work_can_be_given_up() {
+    let labelled = Command::Autolabel.apply(&swatch()).unwrap();
+    let mut window = Window::new(Command::Tessellate { width_mm: Some(0.4) }.apply(&labelled).unwrap());
+    window.press("Stitches");
+    let before = window.editor().project().fabric().unwrap().stitches.clone();
+    use egui_kittest::kittest::Queryable as _;
+    window.harness.get_by_label("Relax mesh").click();
+    window.wait("the button", |_| true);
+    let mut cancelled = false;
+    for _ in 0..400 {
+        window.harness.step();
+        if let Some(button) = window.harness.query_by_label("Cancel") {
+            button.click();
+            cancelled = true;
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(cancelled, "there is a button while it works");
+    window.rest();
+    assert!(window.says("cancelled"));
+    let after = &window.editor().project().fabric().unwrap().stitches;
+    assert!(std::sync::Arc::ptr_eq(&before, after), "the document is as it was");
+    assert_eq!(window.editor().project().fabric().unwrap().stitches.stitch(FaceId(0)).to_string(), "k");
+}
