@@ -2,6 +2,7 @@
 
 use crate::problems::{Problem, problems};
 use crate::project::{Fabric, Project};
+use crate::relax::{MeshStrain, mesh_strain};
 use glam::DVec3;
 use serde::Serialize;
 use sim_core::Facts;
@@ -46,6 +47,9 @@ pub struct Inspection {
     pub yarn_length_m: f64,
     /// Extent in x, y, z [mm].
     pub size_mm: [f64; 3],
+    /// How even the stitches are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_strain: Option<MeshStrain>,
     /// What keeps the mesh from being knitted.
     pub problems: Vec<Problem>,
     /// Figures of the last simulation.
@@ -67,7 +71,10 @@ pub fn inspect(project: &Project) -> Inspection {
         ..Inspection::default()
     };
     match &project.fabric {
-        Some(fabric) => with_fabric(facts, fabric),
+        Some(fabric) => {
+            let mesh_strain = mesh_strain(&fabric.stitches, project.size.height / project.size.width);
+            with_fabric(Inspection { mesh_strain, ..facts }, fabric)
+        }
         None => facts,
     }
 }
@@ -147,6 +154,14 @@ impl std::fmt::Display for Inspection {
             writeln!(f, "{:.2} m of yarn: {open} with ends, {closed} closed", self.yarn_length_m)?;
             let (course, wale) = (self.mean_course_spacing_mm, self.mean_wale_spacing_mm);
             writeln!(f, "rows {course:.2} mm apart, stitches {wale:.2} mm")?;
+        }
+        if let Some(MeshStrain { min, max, rms, .. }) = &self.mesh_strain {
+            let percent = [min, max, rms].map(|s| 100.0 * s);
+            writeln!(
+                f,
+                "stitches {:+.0} … {:+.0} % of even, {:.1} % rms",
+                percent[0], percent[1], percent[2]
+            )?;
         }
         let [x, y, z] = self.size_mm;
         write!(f, "{x:.0} × {y:.0} × {z:.0} mm")?;

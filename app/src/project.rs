@@ -294,15 +294,16 @@ mod tests {
     #[test]
     fn what_is_saved_is_read_again() {
         let mut before = project();
-        let mut state = before.fabric().unwrap().net.laid_state();
-        state.position[3].x += 0.1 + 1e-17;
-        before.fabric.as_mut().unwrap().state = Some(Arc::new(state));
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.purl");
         let mut stitches = (*before.fabric().unwrap().stitches).clone();
         stitches.set_dye(FaceId(2), "#c04030".parse().unwrap()).unwrap();
         stitches.set_live([VertexId(15), VertexId(16)], true).unwrap();
-        before.fabric.as_mut().unwrap().stitches = Arc::new(stitches);
+        let mut fabric = Fabric::new(stitches);
+        let mut state = fabric.net.laid_state();
+        state.position[3].x += 0.1 + 1e-17;
+        fabric.state = Some(Arc::new(state));
+        before.fabric = Some(fabric);
         before.save(&path).unwrap();
         let after = Project::open(&path).unwrap();
         assert_eq!(after.labelled, before.labelled);

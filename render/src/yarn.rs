@@ -1,7 +1,7 @@
 //! Yarn as lit wool, straight from its control points.
 //!
 //! The control points lie in a storage buffer, and the vertex shader evaluates the spline; the number of a vertex says
-//! which span, how far along and where around. So an update uploads 32 bytes a control point, whatever the level of detail.
+//! which span, how far along and where around. So an update uploads 36 bytes a control point, whatever the level of detail.
 //! (An instance a span would be the obvious way, but a GPU, and a software one even more, fills badly with instances of
 //! two triangles.)
 
@@ -11,6 +11,7 @@ mod level;
 mod transport;
 
 use glam::Vec3;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::yarn_curves::YarnCurves;
 use wgpu::CompareFunction::{Greater, Less};
 
@@ -31,17 +32,17 @@ const CHUNK: usize = 32;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 struct Curve {
-    color: [f32; 3],
     radius: f32,
     /// Turn of the frame a span, beside its transport [rad].
     roll: f32,
-    padding: [f32; 3],
 }
 
 /// Yarn on the GPU.
 #[derive(Debug)]
 pub(crate) struct YarnMesh {
     points: GrowingBuffer,
+    /// Colour from each control point to the next, as sRGB in the bytes of a number.
+    dyes: GrowingBuffer,
     curves: GrowingBuffer,
     chunks: Vec<Chunk>,
     bounds: Option<Bounds>,
@@ -52,6 +53,7 @@ impl YarnMesh {
     pub fn new() -> Self {
         Self {
             points: GrowingBuffer::new("yarn control points", wgpu::BufferUsages::STORAGE),
+            dyes: GrowingBuffer::new("yarn colours", wgpu::BufferUsages::STORAGE),
             curves: GrowingBuffer::new("yarns", wgpu::BufferUsages::STORAGE),
             chunks: Vec::new(),
             bounds: None,
@@ -62,15 +64,21 @@ impl YarnMesh {
     /// Replaces the yarn.
     pub fn set(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
         let mut points = Vec::with_capacity(yarn.curves.iter().map(|curve| curve.points.len() + 4).sum());
+        let mut dyes: Vec<u32> = Vec::with_capacity(points.capacity());
         let mut curves = Vec::with_capacity(yarn.curves.len());
         self.chunks.clear();
         for curve in &yarn.curves {
             let first = points.len() + 1;
             let roll = lay_out(curve, curves.len() as u32, &mut points);
+            // One control point lies before the first of the curve, and some after its last.
+            let packed = |dye: &Dye| u32::from_le_bytes([dye.0[0], dye.0[1], dye.0[2], 0]);
+            dyes.resize(first.min(points.len()), 0);
+            dyes.extend(curve.dyes.iter().cycle().take(points.len() - dyes.len()).map(packed));
+            dyes.resize(points.len(), 0);
             if points.len() > first {
                 self.chunks.extend(chunks(&points[first..points.len() - 2], first, curve.radius));
             }
-            curves.push(Curve { color: curve.color, radius: curve.radius, roll, padding: [0.0; 3] });
+            curves.push(Curve { radius: curve.radius, roll });
         }
         self.bounds = Bounds::of(
             self.chunks.iter().flat_map(|chunk| [chunk.center - chunk.reach, chunk.center + chunk.reach]),
@@ -83,6 +91,7 @@ impl YarnMesh {
         let written = self
             .points
             .write(gpu, bytemuck::cast_slice(&points), limit)
+            .and_then(|()| self.dyes.write(gpu, bytemuck::cast_slice(&dyes), limit))
             .and_then(|()| self.curves.write(gpu, bytemuck::cast_slice(&curves), limit));
         if written.is_err() {
             self.chunks.clear();
@@ -144,7 +153,8 @@ impl YarnPipelines {
         samples: u32,
     ) -> Self {
         let device = &gpu.device;
-        let layout = bind_group_layout(device, "yarn", wgpu::ShaderStages::VERTEX, &[STORAGE, STORAGE]);
+        let layout =
+            bind_group_layout(device, "yarn", wgpu::ShaderStages::VERTEX, &[STORAGE, STORAGE, STORAGE]);
         let constants = constants();
         let sources =
             [light::WGSL, &constants, include_str!("yarn/catmull_rom.wgsl"), include_str!("yarn.wgsl")];
@@ -246,11 +256,12 @@ impl YarnPipelines {
         mesh: &YarnMesh,
         batches: &[Batch],
     ) {
-        let (Some(points), Some(curves)) = (mesh.points.buffer(), mesh.curves.buffer()) else { return };
+        let buffers = [&mesh.points, &mesh.curves, &mesh.dyes].map(GrowingBuffer::buffer);
+        let [Some(points), Some(curves), Some(dyes)] = buffers else { return };
         if batches.is_empty() {
             return;
         }
-        let buffers = [points, curves].map(wgpu::Buffer::as_entire_binding);
+        let buffers = [points, curves, dyes].map(wgpu::Buffer::as_entire_binding);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &bind_group(&gpu.device, &self.layout, buffers.to_vec()), &[]);
         pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);

@@ -14,13 +14,13 @@ struct ControlPoint {
 }
 
 struct Curve {
-    color: vec3f,
     radius: f32,
     roll: f32,
 }
 
 @group(1) @binding(0) var<storage, read> points: array<ControlPoint>;
 @group(1) @binding(1) var<storage, read> curves: array<Curve>;
+@group(1) @binding(2) var<storage, read> dyes: array<u32>;
 
 // A vertex number counts spans, steps along a span and sides around it, in the finest level's grid. The end of a span is
 // the start of the next; after a curve's last span comes one of which only the start is drawn.
@@ -44,6 +44,12 @@ struct Station {
     color: vec3f,
 }
 
+// sRGB in the bytes of a number, as light adds up.
+fn linear(dye: u32) -> vec3f {
+    let c = unpack4x8unorm(dye).rgb;
+    return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));
+}
+
 fn station(vertex: u32) -> Station {
     let span = span_of(vertex);
     let step = step_of(vertex);
@@ -56,7 +62,7 @@ fn station(vertex: u32) -> Station {
     // Cut yarn ends in a point rather than in a hole.
     let cut = step == 0u && (start.curve & END) != 0u;
     let radius = select(curve.radius, 0.0, cut);
-    return Station(spline.position, direction(spline.tangent, end.position - start.position), radius, curve.color);
+    return Station(spline.position, direction(spline.tangent, end.position - start.position), radius, linear(dyes[span]));
 }
 
 // The reference normal at a station: that of the span's start, taken along by the smallest rotation, then rolled.

@@ -15,6 +15,7 @@ use render::{
     Camera, Drawing, Faces, Lines, NamedView, Polygon, Quality, RenderError, Renderer, Scene, Segment, Solid,
     Solids, Viewport, palette, read_back, render_image,
 };
+use stitch_mesh::dye::Dye;
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 use support::{gpu, stockinette};
 
@@ -107,7 +108,7 @@ fn the_back_of_a_face_is_darker() {
 #[test]
 fn yarn_is_lit_from_the_upper_left_and_round() {
     let points = (0..8).map(|i| Vec3::new(0.0, 0.05 * (i as f32 - 3.5), 0.0)).collect();
-    let curve = YarnCurve { points, closed: false, radius: 0.05, color: [0.5; 3] };
+    let curve = YarnCurve::new(points, false, 0.05, Dye([188; 3]));
     let drawing = Drawing { yarn: YarnCurves { curves: vec![curve] }, ..Default::default() };
     let picture = draw(&drawing, NamedView::Front);
     // Fibres make single pixels differ: means along the yarn.
@@ -172,7 +173,7 @@ fn impossible_sizes_are_refused() {
 
 #[test]
 fn odd_curves_draw_without_complaint() {
-    let curve = |points, closed| YarnCurve { points, closed, radius: 0.01, color: [0.5; 3] };
+    let curve = |points, closed| YarnCurve::new(points, closed, 0.01, Dye([188; 3]));
     let curves = vec![
         curve(vec![], false),
         curve(vec![Vec3::ZERO], true),

@@ -34,7 +34,11 @@ pub fn carry_over(
     for (x, displacement) in state.position.iter_mut().zip(spread(new_net, &mut moved)) {
         *x += displacement.unwrap_or_default();
     }
-    slide(new_net, &mut state, &slid);
+    // What has been taken in is among what has slid, as long as it is the same yarn that is taken in.
+    if old_net.taken_in.len() == new_net.taken_in.len() {
+        state.taken_in = old_state.taken_in;
+        slide(new_net, &mut state, &slid);
+    }
     state
 }
 

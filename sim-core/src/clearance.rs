@@ -63,7 +63,7 @@ mod tests {
 
     fn line(from: Vec3, to: Vec3) -> YarnCurve {
         let points = (0..30).map(|i| from.lerp(to, i as f32 / 29.0)).collect();
-        YarnCurve { points, closed: false, radius: 0.1, color: [1.0; 3] }
+        YarnCurve::new(points, false, 0.1, stitch_mesh::dye::Dye::UNDYED)
     }
 
     #[test]

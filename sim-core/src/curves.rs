@@ -30,13 +30,16 @@ pub fn curves(net: &YarnNet, state: &YarnState, radius: f64) -> YarnCurves {
 
     let curve = |yarn: &stitch_mesh::yarn_net::Yarn| {
         let mut points = Vec::with_capacity(2 * yarn.visits.len());
+        let mut dyes = Vec::with_capacity(2 * yarn.visits.len());
         for visit in yarn.visits.clone().map(VisitId) {
             points.push(at(visit).as_vec3());
             let Some(next) = net.next(visit) else { continue };
             let middle = middles.get(&(visit, next)).or_else(|| middles.get(&(next, visit)));
             points.extend(middle.map(|m| m.as_vec3()));
+            dyes.resize(points.len(), net.visits[visit.index()].dye);
         }
-        YarnCurve { points, closed: yarn.period.is_some(), radius: radius as f32, color: yarn.color }
+        dyes.resize(points.len(), dyes.last().copied().unwrap_or_default());
+        YarnCurve { points, closed: yarn.period.is_some(), radius: radius as f32, dyes }
     };
     YarnCurves { curves: net.yarns.iter().map(curve).collect() }
 }

@@ -25,6 +25,7 @@ mod gravity;
 mod local;
 mod mass;
 mod material;
+pub mod mesh_relax;
 mod model;
 mod noise;
 mod parallel;
@@ -35,6 +36,7 @@ mod simulator;
 mod solver;
 mod step;
 mod stretch;
+mod take_in;
 mod thread;
 mod wrap;
 

@@ -29,7 +29,7 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 use stitch_mesh::ids::{NodeId, VisitId};
-use stitch_mesh::yarn_net::{YarnNet, YarnState};
+use stitch_mesh::yarn_net::{NodeKind, YarnNet, YarnState};
 
 /// Angle between a bend at rest and the onset of its jamming [rad].
 const JAM_MARGIN: f64 = 0.05;
@@ -117,6 +117,9 @@ pub(crate) struct SegmentTerm {
     pub rest: f64,
     /// Whether it lies in a stitch contact.
     pub in_contact: bool,
+    /// How close its ends may come along the yarn, over the parallel distance: half at nodes where yarns only cross, which
+    /// lie closer.
+    pub closeness: f64,
 }
 
 impl SegmentTerm {
@@ -130,7 +133,7 @@ impl SegmentTerm {
             let stiffness = material.length_factor * material.stretch_stiffness();
             Spacing::Contact(ContactLength { stiffness, rest: self.rest })
         } else {
-            let distance = material.parallel_distance.min(self.rest);
+            let distance = self.closeness * material.parallel_distance.min(self.rest);
             Spacing::Free(Parallel { stiffness: material.parallel_stiffness, distance })
         }
     }
@@ -325,7 +328,9 @@ fn segments(net: &YarnNet) -> Result<Vec<SegmentTerm>, NetError> {
             return Err(NetError::NoYarn(a, b, rest));
         }
         let stencil = Stencil::new(net, segment.ends, [0.0, segment.wrap]);
-        terms.push(SegmentTerm { stencil, rest, in_contact: false });
+        let crosses = stencil.nodes.iter().any(|n| net.nodes[n.index()].kind == NodeKind::Crossing);
+        let closeness = if crosses { 0.5 } else { 1.0 };
+        terms.push(SegmentTerm { stencil, rest, in_contact: false, closeness });
     }
     let by_ends: HashMap<[VisitId; 2], usize> =
         terms.iter().enumerate().map(|(i, t)| (t.stencil.visits, i)).collect();

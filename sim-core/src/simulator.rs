@@ -7,6 +7,7 @@ use crate::noise::unit_hash;
 use crate::scene::{Scene, SceneError};
 use crate::solver::cholesky::SolveError;
 use crate::step::{Rejection, Stepper, Stuck};
+use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -110,6 +111,7 @@ pub enum Settled {
 /// A running simulation. Owns all that it needs.
 pub struct Simulator {
     stepper: Stepper,
+    take_in: TakeIn,
     material: Material,
     scene: Scene,
     now: Stuck,
@@ -130,7 +132,9 @@ impl Simulator {
     ) -> Result<Self, SimError> {
         material.validate()?;
         scene.validate(net.nodes.len())?;
-        let model = Model::new(Arc::clone(net))?;
+        let mut model = Model::new(Arc::clone(net))?;
+        let take_in = TakeIn::new(net);
+        take_in.shorten_turns(&mut model, state.taken_in);
         check_state(&model, &state)?;
         for (i, x) in state.position.iter_mut().enumerate() {
             let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
@@ -141,6 +145,7 @@ impl Simulator {
         let step = scene.time_step;
         Ok(Self {
             stepper,
+            take_in,
             material,
             scene,
             now: Stuck { state, anchor },
@@ -156,6 +161,8 @@ impl Simulator {
     pub fn step(&mut self) -> Result<StepReport, SimError> {
         let smallest = self.scene.time_step * 0.5f64.powi(MOST_HALVINGS);
         let mut rejected = 0;
+        let Stuck { state, anchor } = &mut self.now;
+        self.take_in.step(&mut self.stepper.model, state, anchor, self.step);
         loop {
             match self.stepper.step(&self.now, &self.material, &self.scene, self.step) {
                 Ok(next) => {

@@ -229,6 +229,7 @@ fn advanced(state: &YarnState, velocity: Vec<DVec3>, sliding_velocity: Vec<f64>,
         sliding: state.sliding.iter().zip(&sliding_velocity).map(slid).collect(),
         velocity,
         sliding_velocity,
+        taken_in: state.taken_in,
     }
 }
 

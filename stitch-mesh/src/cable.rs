@@ -8,7 +8,7 @@
 //! `order` which strand stands where above, left to right; `front` which lies over which, front to back. A left cross of two
 //! over two (a knitter's C4F) is strands 2 2, order 1 0, front 1 0: the right strand goes to the left, in front.
 
-use crate::ids::VertexId;
+use crate::ids::{HalfEdgeId, VertexId};
 use crate::stitch_mesh::StitchMesh;
 use serde::{Deserialize, Serialize};
 
@@ -137,6 +137,18 @@ impl StitchMesh {
     /// The cables.
     pub fn cables(&self) -> &[Cable] {
         &self.marks().cables
+    }
+
+    /// The bottom edge into which the loop on a top edge goes: the one across, or where a cable takes it.
+    pub fn loop_above(&self, top: HalfEdgeId) -> Option<HalfEdgeId> {
+        let mesh = self.mesh();
+        let (left, right) = (mesh.tip(top), mesh.origin(top));
+        let crossed = self.cables().iter().find_map(|cable| {
+            let i = cable.path.windows(2).position(|w| *w == [left, right])?;
+            let (place, _) = cable.crossing()[i];
+            mesh.half_edge_between(cable.path[place], cable.path[place + 1])
+        });
+        crossed.or_else(|| mesh.twin(top))
     }
 
     /// Sets a cable. All ids survive.

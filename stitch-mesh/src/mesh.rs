@@ -6,7 +6,7 @@
 
 use crate::corners::Corners;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
-use crate::validate::{MeshProblem, area_vector, place_problems, validate};
+use crate::validate::{MeshProblem, area_vector, position_problems, validate};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -86,17 +86,22 @@ impl PolygonMesh {
         Ok(Self { positions, half_edges, edges, face_starts, border_from, corners })
     }
 
-    /// The same mesh with its vertices elsewhere [m]; all ids survive.
+    /// The same mesh with its vertices at other positions [m]. All ids survive.
     ///
     /// # Errors
-    /// Everything that [`validate`] finds.
+    /// A number of positions that is not that of the vertices; coordinates that are not finite; faces without area.
     pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, MeshError> {
-        let faces = self.face_lists();
-        if positions.len() != self.positions.len() {
-            return Self::new(positions, &faces);
+        if positions.len() != self.vertex_count() {
+            return Err(MeshError(vec![MeshProblem::PositionCount {
+                given: positions.len(),
+                vertices: self.vertex_count(),
+            }]));
         }
-        let problems = place_problems(&positions, &faces);
-        if problems.is_empty() { Ok(Self { positions, ..self.clone() }) } else { Err(MeshError(problems)) }
+        let problems = position_problems(&positions, &self.face_lists());
+        if !problems.is_empty() {
+            return Err(MeshError(problems));
+        }
+        Ok(Self { positions, ..self.clone() })
     }
 
     /// Vertex positions, [vertex_count] [m].
@@ -337,6 +342,7 @@ impl PolygonMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3Swizzles as _;
 
     /// Two quads side by side.
     fn pair() -> PolygonMesh {
@@ -367,6 +373,17 @@ mod tests {
         let mesh = pair();
         assert!((mesh.face_area_vector(FaceId(0)) - DVec3::Z).length() < 1e-12);
         assert!(mesh.vertex_normals().iter().all(|n| (*n - DVec3::Z).length() < 1e-12));
+    }
+
+    #[test]
+    fn moving_keeps_everything_but_the_positions() {
+        let mesh = pair();
+        let there: Vec<DVec3> = mesh.positions().iter().map(|p| 2.0 * p.yzx() + DVec3::Z).collect();
+        let moved = mesh.moved_to(there.clone()).unwrap();
+        assert_eq!(moved, PolygonMesh::new(there.clone(), &mesh.face_lists()).unwrap());
+        assert!(mesh.moved_to(there[1..].to_vec()).unwrap_err().to_string().contains("5 positions"));
+        assert!(mesh.moved_to(vec![DVec3::ZERO; 6]).unwrap_err().to_string().contains("no area"));
+        assert!(mesh.moved_to(vec![DVec3::NAN; 6]).is_err());
     }
 
     #[test]

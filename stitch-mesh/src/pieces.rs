@@ -1,10 +1,31 @@
 //! Plain pieces of fabric, stitch by stitch: the rectangle and the tube that swatches and experiments begin with.
 
 use crate::edge_counts::StitchSize;
-use crate::mesh::PolygonMesh;
+use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{StitchMesh, StitchMeshError};
 use glam::DVec3;
+
+/// Rows that make no piece.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PieceError {
+    /// A row that leaves loops over, or wants more than there are.
+    #[error("row {number} joins {joined} loops, but there are {below} below it")]
+    Row {
+        /// The row, from 0.
+        number: usize,
+        /// Loops that its stitches join.
+        joined: usize,
+        /// Loops below.
+        below: usize,
+    },
+    /// The stitches make no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// Nor a stitch mesh.
+    #[error(transparent)]
+    StitchMesh(#[from] StitchMeshError),
+}
 
 /// A flat piece of `wide` × `high` knit stitches in the plane z = 0, front to +z, wales up along +y, centred on the origin.
 ///
@@ -32,6 +53,43 @@ pub fn tube(around: usize, high: usize, size: StitchSize) -> Result<StitchMesh, 
         DVec3::new(radius * angle.sin(), (j as f64 - high as f64 / 2.0) * size.height, radius * angle.cos())
     };
     quads(around, around, high, place)
+}
+
+/// A flat piece from its rows of stitches, the lowest first, each from left to right; it lies as [`rectangle`] does, every
+/// row as wide as it has loops.
+///
+/// # Errors
+/// No stitches; a row that does not join all loops of the row below.
+pub fn from_rows(rows: &[Vec<Stitch>], size: StitchSize) -> Result<StitchMesh, PieceError> {
+    let bottoms = |row: &[Stitch]| row.iter().map(Stitch::bottoms).sum::<usize>();
+    let mut loops = vec![rows.first().map_or(0, |row| bottoms(row))];
+    for (number, row) in rows.iter().enumerate() {
+        let (joined, below) = (bottoms(row), loops[number]);
+        if joined != below {
+            return Err(PieceError::Row { number, joined, below });
+        }
+        loops.push(row.iter().map(Stitch::tops).sum());
+    }
+    let mut first = vec![0];
+    loops.iter().for_each(|n| first.push(first[first.len() - 1] + n + 1));
+    let place = |(level, count): (usize, &usize)| {
+        let y = (level as f64 - rows.len() as f64 / 2.0) * size.height;
+        let half = *count as f64 / 2.0;
+        (0..=*count).map(move |i| DVec3::new((i as f64 - half) * size.width, y, 0.0))
+    };
+    let positions = loops.iter().enumerate().flat_map(place).collect();
+    let mut faces = Vec::new();
+    for (level, row) in rows.iter().enumerate() {
+        let (mut below, mut above) = (first[level], first[level + 1]);
+        for stitch in row {
+            let bottom = (0..=stitch.bottoms()).map(|i| below + i);
+            let top = (0..=stitch.tops()).rev().map(|i| above + i);
+            faces.push(bottom.chain(top).map(|v| v as u32).collect());
+            (below, above) = (below + stitch.bottoms(), above + stitch.tops());
+        }
+    }
+    let mesh = PolygonMesh::new(positions, &faces)?;
+    Ok(StitchMesh::new(mesh, rows.iter().flatten().cloned().collect())?)
 }
 
 /// Quadrilaterals in rows of `wide` over rows of `vertices`; a row with as many vertices as faces is closed.
@@ -67,6 +125,18 @@ mod tests {
         let front = round.mesh().face_center(round.rows()[0].faces[0]);
         assert!(round.mesh().face_area_vector(round.rows()[0].faces[0]).dot(front.with_y(0.0)) > 0.0);
         assert!(rectangle(0, 3, size).is_err());
+    }
+
+    #[test]
+    fn rows_make_a_shaped_piece() {
+        let row = |text: &str| text.split_whitespace().map(|s| s.parse().unwrap()).collect::<Vec<Stitch>>();
+        let size = StitchSize::of_width(3e-3);
+        let piece = from_rows(&[row("k k k k"), row("k d12k k"), row("k kp k")], size).unwrap();
+        let rows: Vec<usize> = piece.rows().iter().map(|r| r.faces.len()).collect();
+        assert_eq!((rows, piece.loop_count()), (vec![4, 3, 3], 4 + 3 + 4));
+        let error = from_rows(&[row("k k"), row("k k k")], size).unwrap_err();
+        assert_eq!(error.to_string(), "row 1 joins 3 loops, but there are 2 below it");
+        assert!(from_rows(&[], size).is_err());
     }
 
     #[test]

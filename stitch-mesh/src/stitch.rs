@@ -5,7 +5,13 @@
 //! it that knitters use. There is no behaviour per stitch type anywhere: the yarn layer reads these two lists.
 //!
 //! Symbols are the paper's: `k`, `p`, `ky`, `kyk`, `d12k`, `d312p`; `k1` and `y-1` for a top twisted clockwise or
-//! counter-clockwise; `d123` alone for loops gathered on a yarn that makes no loop of its own.
+//! counter-clockwise; `d123` alone for loops gathered on a yarn that makes no loop of its own, `d0y` for a yarn-over with no loop
+//! below it. `s` and `x` make no loop either:
+//! there the old one goes on up, slipped, and the row's yarn passes it behind (`s`) or woven through its legs (`x`); so `sk`
+//! is a loop slipped and knitted into as well.
+//!
+//! Orders count from the left as the fabric is seen: the first in `d12k` is the left loop, and in front, so it is a knitter's
+//! k2tog; `d21k` is ssk.
 
 use serde::{Deserialize, Serialize};
 use smallvec::{SmallVec, smallvec};
@@ -21,6 +27,10 @@ pub enum Make {
     Purl,
     /// Yarn-over: laid over the needle, through nothing.
     YarnOver,
+    /// Slipped: the old loop itself goes on up, the yarn passes behind it.
+    Slip,
+    /// Crossed: the old loop goes on up, and the yarn crosses it in front of one leg and behind the other.
+    Cross,
 }
 
 /// One top of a stitch.
@@ -52,6 +62,18 @@ pub struct StitchError {
     pub why: &'static str,
 }
 
+impl Make {
+    /// Whether yarn is pulled through the old loops.
+    pub fn pulls_through(self) -> bool {
+        matches!(self, Self::Knit | Self::Purl)
+    }
+
+    /// Whether the old loop itself goes on up.
+    pub fn passes_on(self) -> bool {
+        matches!(self, Self::Slip | Self::Cross)
+    }
+}
+
 impl Stitch {
     /// The plain knit stitch, `k`.
     pub fn knit() -> Self {
@@ -68,8 +90,8 @@ impl Stitch {
     }
 
     /// The stitch that a face with these numbers of bottoms and tops gets when nobody has chosen one: knit where it can be,
-    /// `kp` (a knitter's kfb: no hole) for an increase, leaning to the left or to the right for a decrease.
-    pub fn default_for(bottoms: usize, tops: usize, leans_left: bool) -> Self {
+    /// `kp` (a knitter's kfb: no hole) for an increase, a decrease with the leftmost or the rightmost loop in front.
+    pub fn default_for(bottoms: usize, tops: usize, left_in_front: bool) -> Self {
         let make = |i: usize| match (bottoms, i % 2) {
             (0, _) => Make::YarnOver,
             (_, 0) => Make::Knit,
@@ -78,7 +100,7 @@ impl Stitch {
         let stack = 0..bottoms as u8;
         Self {
             ops: (0..tops).map(|i| Op { make: make(i), twist: 0 }).collect(),
-            stack: if leans_left { stack.collect() } else { stack.rev().collect() },
+            stack: if left_in_front { stack.collect() } else { stack.rev().collect() },
         }
     }
 
@@ -92,15 +114,32 @@ impl Stitch {
         self.ops.len()
     }
 
-    /// Whether any of its loops is pulled through the old ones, so that it holds them.
+    /// Whether it holds its old loops, or hands them on to the stitch above.
     pub fn holds(&self) -> bool {
         self.ops.is_empty() || self.ops.iter().any(|op| op.make != Make::YarnOver)
+    }
+
+    /// What no yarn can do, if the stitch asks for it.
+    fn fault(&self) -> Option<&'static str> {
+        if !self.holds() && self.bottoms() > 1 {
+            return Some("its loops would be held by nothing");
+        }
+        if self.bottoms() == 0 && self.holds() {
+            return Some("without a loop below it only yarn-overs can be made");
+        }
+        match (self.ops.iter().filter(|op| op.make.passes_on()).count(), self.bottoms()) {
+            (0, _) | (1, 1) => None,
+            (1, _) => Some("only one loop can be slipped at a time"),
+            _ => Some("the same loop cannot be slipped twice"),
+        }
     }
 }
 
 impl fmt::Display for Stitch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.stack.len() > 1 || self.ops.is_empty() {
+        if self.stack.is_empty() {
+            f.write_str("d0")?;
+        } else if self.stack.len() > 1 || self.ops.is_empty() {
             f.write_str("d")?;
             self.stack.iter().try_for_each(|b| write!(f, "{}", b + 1))?;
         }
@@ -109,6 +148,8 @@ impl fmt::Display for Stitch {
                 Make::Knit => "k",
                 Make::Purl => "p",
                 Make::YarnOver => "y",
+                Make::Slip => "s",
+                Make::Cross => "x",
             })?;
             match op.twist {
                 0 => {}
@@ -128,10 +169,11 @@ impl FromStr for Stitch {
         let mut stack: SmallVec<[u8; 2]> = smallvec![0];
         if let Some(after) = rest.strip_prefix('d') {
             let digits = after.len() - after.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-            stack = after.bytes().take(digits).map(|b| b.wrapping_sub(b'1')).collect();
+            let order = if &after[..digits] == "0" { "" } else { &after[..digits] };
+            stack = order.bytes().map(|b| b.wrapping_sub(b'1')).collect();
             let mut sorted = stack.clone();
             sorted.sort_unstable();
-            if stack.is_empty() || sorted.iter().enumerate().any(|(i, b)| *b as usize != i) {
+            if digits == 0 || sorted.iter().enumerate().any(|(i, b)| *b as usize != i) {
                 return Err(fail("after d stand the loops from front to back, each once, as in d21k"));
             }
             rest = &after[digits..];
@@ -144,7 +186,9 @@ impl FromStr for Stitch {
                 'k' => Make::Knit,
                 'p' => Make::Purl,
                 'y' => Make::YarnOver,
-                _ => return Err(fail("only k, p and y make loops")),
+                's' => Make::Slip,
+                'x' => Make::Cross,
+                _ => return Err(fail("only k, p and y make loops, and s and x hand them on")),
             };
             rest = &rest[1..];
             let twist = if let Some(after) = rest.strip_prefix("-1") {
@@ -159,10 +203,7 @@ impl FromStr for Stitch {
             ops.push(Op { make, twist });
         }
         let stitch = Self { ops, stack };
-        if !stitch.holds() && stitch.bottoms() > 1 {
-            return Err(fail("its loops would be held by nothing"));
-        }
-        Ok(stitch)
+        stitch.fault().map_or(Ok(stitch), |why| Err(fail(why)))
     }
 }
 
@@ -187,7 +228,8 @@ mod tests {
     #[test]
     fn table_1_reads_and_writes() {
         let table = "k p kp ky yk py yp kpk kyk yky kpy ykp pkp pyp ypy pky ypk d12k d21k d12p d21p d123k d132k d213k \
-                     d231k d312k d321k d123p d132p d213p d231p d312p d321p k1 k-1 y1 y-1 k1y kp1 d21k-1 d1 d213";
+                     d231k d312k d321k d123p d132p d213p d231p d312p d321p k1 k-1 y1 y-1 k1y kp1 d21k-1 d1 d213 \
+                     s x sk ks s1 kxk d0y d0yy";
         for symbol in table.split_whitespace() {
             let stitch: Stitch = symbol.parse().unwrap();
             assert_eq!(stitch.to_string(), symbol);
@@ -198,7 +240,10 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for symbol in ["", "d", "dk", "d11k", "d13k", "d0k", "q", "k2", "kå", "d12y", "1"] {
+        for symbol in [
+            "", "d", "dk", "d11k", "d13k", "d0k", "q", "k2", "kå", "d12y", "1", "d0", "d01k", "d12s", "ss",
+            "sx",
+        ] {
             assert!(symbol.parse::<Stitch>().is_err(), "{symbol}");
         }
     }

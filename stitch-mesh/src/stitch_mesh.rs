@@ -19,6 +19,7 @@ use crate::label::Row;
 use crate::marks::Marks;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// A mesh of stitches. See the module.
@@ -97,15 +98,6 @@ pub enum StitchMeshError {
     },
 }
 
-/// A stitch as it is meant for a face with so many course edges: one symbol stands for yarn-overs that begin from nothing and
-/// for those above a loop of the border, and the face tells which.
-fn fitted(mut stitch: Stitch, edges: usize) -> Stitch {
-    if stitch.bottoms() == 1 && !stitch.holds() && edges == stitch.tops() {
-        stitch.stack.clear();
-    }
-    stitch
-}
-
 impl StitchMesh {
     /// Puts mesh and stitches together.
     ///
@@ -116,8 +108,6 @@ impl StitchMesh {
             return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
         }
         let faces = mesh.face_count();
-        let fitted = mesh.faces().zip(stitches).map(|(f, s)| fitted(s, mesh.face_half_edges(f).len() - 2));
-        let stitches = fitted.collect();
         let stitch_mesh = Self {
             mesh,
             stitches,
@@ -156,6 +146,14 @@ impl StitchMesh {
         Ok(())
     }
 
+    /// The same stitches with the vertices at other positions [m]. All ids survive.
+    ///
+    /// # Errors
+    /// As [`PolygonMesh::moved_to`].
+    pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, StitchMeshError> {
+        Ok(Self { mesh: self.mesh.moved_to(positions)?, ..self.clone() })
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &PolygonMesh {
         &self.mesh
@@ -177,7 +175,6 @@ impl StitchMesh {
     /// [`StitchMeshError`] where the stitch does not fit; nothing is changed then.
     pub fn set_stitch(&mut self, face: FaceId, stitch: Stitch) -> Result<(), StitchMeshError> {
         let old = self.stitches.get(face.index()).ok_or(StitchMeshError::NoFace(face))?;
-        let stitch = fitted(stitch, old.bottoms() + old.tops());
         if (old.bottoms(), old.tops()) != (stitch.bottoms(), stitch.tops()) {
             let edges = old.bottoms() + old.tops();
             let (bottoms, tops) = (stitch.bottoms(), stitch.tops());
@@ -207,14 +204,6 @@ impl StitchMesh {
         &self.places
     }
 
-    /// The same stitches on a mesh with its vertices elsewhere [m]; all ids survive.
-    ///
-    /// # Errors
-    /// A face that would have no area.
-    pub fn moved_to(&self, positions: Vec<glam::DVec3>) -> Result<Self, MeshError> {
-        Ok(Self { mesh: self.mesh.moved_to(positions)?, ..self.clone() })
-    }
-
     /// Bottom half-edges of a face, left to right.
     pub fn bottoms(&self, face: FaceId) -> impl ExactSizeIterator<Item = HalfEdgeId> + use<> {
         self.mesh.face_half_edges(face).take(self.stitch(face).bottoms())
@@ -236,6 +225,16 @@ impl StitchMesh {
     pub fn left(&self, face: FaceId) -> HalfEdgeId {
         let stitch = self.stitch(face);
         HalfEdgeId::new(self.right(face).index() + stitch.tops() + 1)
+    }
+
+    /// The way up across a face: from the middle of its bottom side to the middle of its top side [m].
+    pub fn up(&self, face: FaceId) -> DVec3 {
+        let middle = |a: HalfEdgeId, b: HalfEdgeId| {
+            0.5 * (self.mesh.position(self.mesh.origin(a)) + self.mesh.position(self.mesh.tip(b)))
+        };
+        let (left, right) = (self.left(face), self.right(face));
+        // The left wale edge runs down, the right one up.
+        middle(left, right) - middle(right, left)
     }
 
     /// Whether a half-edge is a bottom of its face.

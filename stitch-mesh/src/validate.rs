@@ -12,6 +12,14 @@ pub enum MeshProblem {
     /// There are no faces at all.
     #[error("the mesh has no faces")]
     Empty,
+    /// Positions for another number of vertices.
+    #[error("{given} positions for {vertices} vertices")]
+    PositionCount {
+        /// Positions given.
+        given: usize,
+        /// Vertices there are.
+        vertices: usize,
+    },
     /// A coordinate is not a finite number.
     #[error("vertex {0} has a coordinate that is not a finite number")]
     NotFinite(VertexId),
@@ -69,6 +77,7 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if faces.is_empty() {
         problems.push(MeshProblem::Empty);
     }
+    problems.extend(not_finite(positions));
     for (f, vertices) in faces.iter().enumerate() {
         let face = FaceId::new(f);
         let missing = vertices.iter().find(|v| **v as usize >= positions.len());
@@ -79,7 +88,7 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if !problems.is_empty() {
         return problems; // what follows looks vertices up and measures them
     }
-    problems.extend(place_problems(positions, faces));
+    problems.extend(degenerate_faces(positions, faces));
     let corners = Corners::new(positions.len(), faces);
     if corners.has_doubles() {
         problems.extend(edge_problems(faces));
@@ -90,17 +99,22 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     problems
 }
 
-/// What is wrong with where the vertices are: coordinates that are no numbers, faces without area.
-pub(crate) fn place_problems(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
-    let mut problems = Vec::new();
-    let not_finite = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
-    problems.extend(not_finite.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v))));
-    for (f, vertices) in faces.iter().enumerate() {
-        if let Some(why) = degenerate(positions, vertices) {
-            problems.push(MeshProblem::DegenerateFace { face: FaceId::new(f), why });
-        }
-    }
-    problems
+/// What can be wrong with a mesh after its vertices have moved.
+pub(crate) fn position_problems(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+    let problems: Vec<MeshProblem> = not_finite(positions).collect();
+    if problems.is_empty() { degenerate_faces(positions, faces).collect() } else { problems }
+}
+
+fn not_finite(positions: &[DVec3]) -> impl Iterator<Item = MeshProblem> {
+    let vertices = positions.iter().enumerate().filter(|(_, p)| !p.is_finite());
+    vertices.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v)))
+}
+
+fn degenerate_faces(positions: &[DVec3], faces: &[Vec<u32>]) -> impl Iterator<Item = MeshProblem> {
+    faces.iter().enumerate().filter_map(|(f, vertices)| {
+        let why = degenerate(positions, vertices)?;
+        Some(MeshProblem::DegenerateFace { face: FaceId::new(f), why })
+    })
 }
 
 fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {

@@ -4,6 +4,7 @@
 //! free of loops and cusps where control points lie close together, as they do at a stitch contact. The renderer evaluates
 //! the same spline on the GPU.
 
+use crate::dye::Dye;
 use glam::Vec3;
 
 /// One drawn yarn.
@@ -15,8 +16,8 @@ pub struct YarnCurve {
     pub closed: bool,
     /// Radius of the yarn as drawn [m].
     pub radius: f32,
-    /// Colour, linear RGB.
-    pub color: [f32; 3],
+    /// Colour of the yarn from each control point to the next, [point_count].
+    pub dyes: Vec<Dye>,
 }
 
 /// All yarns of a fabric.
@@ -27,6 +28,11 @@ pub struct YarnCurves {
 }
 
 impl YarnCurve {
+    /// A yarn of one colour.
+    pub fn new(points: Vec<Vec3>, closed: bool, radius: f32, dye: Dye) -> Self {
+        Self { dyes: vec![dye; points.len()], points, closed, radius }
+    }
+
     /// Number of spans: pieces of curve between neighbouring control points.
     pub fn span_count(&self) -> usize {
         if self.closed { self.points.len() } else { self.points.len().saturating_sub(1) }
@@ -82,7 +88,7 @@ mod tests {
     #[test]
     fn spline_interpolates_its_points_and_reproduces_a_line() {
         let points = vec![Vec3::ZERO, Vec3::X, Vec3::X * 3.0, Vec3::X * 3.5];
-        let curve = YarnCurve { points, closed: false, radius: 0.1, color: [1.0; 3] };
+        let curve = YarnCurve::new(points, false, 0.1, Dye::UNDYED);
         let drawn = curve.sample(5);
         assert_eq!(drawn.len(), 16);
         assert!(drawn[5].distance(Vec3::X) < 1e-6 && drawn[10].distance(Vec3::X * 3.0) < 1e-6);
@@ -92,7 +98,7 @@ mod tests {
     #[test]
     fn closed_curve_passes_every_point_once() {
         let points = vec![Vec3::ZERO, Vec3::X, Vec3::ONE];
-        let curve = YarnCurve { points: points.clone(), closed: true, radius: 0.1, color: [1.0; 3] };
+        let curve = YarnCurve::new(points.clone(), true, 0.1, Dye::UNDYED);
         let drawn = curve.sample(4);
         assert_eq!(drawn.len(), 12);
         for (i, p) in points.iter().enumerate() {

@@ -17,10 +17,24 @@
 //!
 //! A net knows nothing of stitch symbols. It lives from the laying of the yarn to the next edit of the stitch mesh.
 
-use crate::ids::{FaceId, NodeId, VisitId, YarnId};
+use crate::dye::Dye;
+use crate::ids::{FaceId, HalfEdgeId, NodeId, VisitId, YarnId};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::Range;
+
+/// What happens at a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeKind {
+    /// An end of a stitch contact: yarn pulled through loops, wrapped around them.
+    Stitch,
+    /// Yarn threaded through a loop: gathered loops, the last one of a bind-off, a seam.
+    Thread,
+    /// Yarns that cross and hold nothing: a cable, a slipped loop, the legs of a twisted one.
+    Crossing,
+    /// One yarn alone: a tail, a turn, a live loop.
+    Free,
+}
 
 /// A contact node as it was laid.
 #[derive(Clone, Debug)]
@@ -33,6 +47,8 @@ pub struct Node {
     pub visits: SmallVec<[VisitId; 3]>,
     /// The stitch that this node lies in; none outside of the mesh (cast-on, bind-off, tails).
     pub face: Option<FaceId>,
+    /// What happens there.
+    pub kind: NodeKind,
 }
 
 /// One yarn passing one node.
@@ -44,6 +60,8 @@ pub struct Visit {
     pub yarn: YarnId,
     /// Sliding coordinate when laid: arc length along the unstretched yarn from its first visit [m].
     pub u: f64,
+    /// Colour of the yarn from here to the next visit.
+    pub dye: Dye,
 }
 
 /// One piece of yarn: a run of visits.
@@ -53,8 +71,24 @@ pub struct Yarn {
     pub visits: Range<u32>,
     /// For a closed yarn the rest length of the whole ring [m]: the coordinate at which it meets its first visit again.
     pub period: Option<f64>,
-    /// Colour, linear RGB.
-    pub color: [f32; 3],
+}
+
+/// The loop on a top edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// The top half-edge, seen from the stitch that made the loop or handed it on.
+    pub top: HalfEdgeId,
+    /// The visits of its head: all beyond the edge; indices into [`YarnNet::visits`].
+    pub head: Range<u32>,
+}
+
+/// Yarn that is drawn tight when the simulation begins: laid longer than it is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TakenIn {
+    /// The visit with which the segment begins.
+    pub segment: VisitId,
+    /// By how much its rest length becomes shorter [m].
+    pub length: f64,
 }
 
 /// A stitch contact: the stretch on which two or more yarns are wrapped around each other, between two nodes
@@ -90,6 +124,10 @@ pub struct YarnNet {
     pub yarns: Vec<Yarn>,
     /// Stitch contacts.
     pub contacts: Vec<StitchContact>,
+    /// The loops on all top edges, except where tops meet tops.
+    pub loops: Vec<Loop>,
+    /// Segments that are taken in.
+    pub taken_in: Vec<TakenIn>,
 }
 
 impl YarnNet {
@@ -139,6 +177,7 @@ impl YarnNet {
             velocity: vec![DVec3::ZERO; self.nodes.len()],
             sliding: self.visits.iter().map(|v| v.u).collect(),
             sliding_velocity: vec![0.0; self.visits.len()],
+            taken_in: 0.0,
         }
     }
 }
@@ -154,6 +193,9 @@ pub struct YarnState {
     pub sliding: Vec<f64>,
     /// Their rates, [visit_count] [m/s].
     pub sliding_velocity: Vec<f64>,
+    /// How much of [`YarnNet::taken_in`] has been taken in, 0 to 1.
+    #[serde(default)]
+    pub taken_in: f64,
 }
 
 impl YarnState {
@@ -161,6 +203,7 @@ impl YarnState {
     pub fn is_finite(&self) -> bool {
         self.position.iter().chain(&self.velocity).all(|v| v.is_finite())
             && self.sliding.iter().chain(&self.sliding_velocity).all(|u| u.is_finite())
+            && (0.0..=1.0).contains(&self.taken_in)
     }
 
     /// Whether this state has the shape of `net`.

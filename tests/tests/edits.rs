@@ -17,6 +17,7 @@ use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::{Make, Op, Stitch};
 use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::unravel::loose_loops;
 use tests::fabrics;
 
 /// Numbers from which one edit is made up.
@@ -54,9 +55,10 @@ fn some_stitch(bottoms: usize, tops: usize, mut dice: u32) -> Stitch {
     };
     let mut stack: Vec<u8> = (0..bottoms as u8).collect();
     (1..bottoms).for_each(|i| stack.swap(i, throw(i as u32 + 1) as usize));
-    let make = |n| [Make::Knit, Make::Purl, Make::YarnOver][n as usize];
-    let ops = (0..tops).map(|_| Op { make: make(throw(3)), twist: throw(3) as i8 - 1 }).collect();
-    Stitch { ops, stack: stack.into() }
+    let make = |n| [Make::Knit, Make::Purl, Make::YarnOver, Make::Slip, Make::Cross][n as usize];
+    let ops = (0..tops).map(|_| Op { make: make(throw(5)), twist: throw(3) as i8 - 1 }).collect();
+    let stitch = Stitch { ops, stack: stack.into() };
+    stitch.to_string().parse().unwrap_or_else(|_| Stitch::default_for(bottoms, tops, dice.is_multiple_of(2)))
 }
 
 /// Loops side by side above a row, from a stitch to the right.
@@ -190,6 +192,8 @@ fn check_mesh(stitches: &StitchMesh) {
     }
     for face in mesh.faces() {
         assert_eq!(mesh.face_half_edges(face).filter(|h| stitches.is_wale(*h)).count(), 2);
+        let stitch = stitches.stitch(face);
+        assert_eq!(stitch.to_string().parse().as_ref(), Ok(stitch), "files name stitches by symbol");
     }
     let mut seen = HashSet::new();
     for row in stitches.rows() {
@@ -205,6 +209,7 @@ fn check_yarn(fabric: &Fabric) {
     let net = &fabric.net;
     assert!(net.nodes.iter().all(|n| n.position.is_finite()));
     assert!(fabric.state().fits(net));
+    assert_eq!(loose_loops(&fabric.stitches, net), [], "loops that nothing holds");
 }
 
 fn check(project: &Project) {

@@ -119,6 +119,33 @@ fn a_crown_goes_through_too() {
     goes_through("hat", "36", 0, true);
 }
 
+#[test]
+fn stitches_relax_on_the_surface_and_the_yarn_follows() {
+    let program = program();
+    let laid = program.json(&["new", &asset("pullover"), "-o", "laid.purl", "--stitch-size", "20"]);
+    let even = program.json(&["relax", "laid.purl", "-o", "even.purl", "--stage", "mesh"]);
+    check_facts(&even);
+    for same in ["faces", "rows", "loops", "contact_nodes", "boundary_edges", "stitches", "yarns"] {
+        assert_eq!(even[same], laid[same], "{same}");
+    }
+    let rms = |facts: &Value| number(&facts["mesh_strain"], "rms");
+    assert!(rms(&even) < 0.8 * rms(&laid), "{} to {}", laid["mesh_strain"], even["mesh_strain"]);
+    let worst = even["mesh_strain"]["worst"].as_array().unwrap();
+    assert!(worst.len() == 5 && worst[0]["face"].is_u64(), "{worst:?}");
+    assert_eq!(even["sim"], Value::Null);
+
+    program.write("relax.jsonl", "{\"do\":\"relax_mesh\"}\n");
+    program.json(&["edit", "laid.purl", "relax.jsonl", "-o", "edited.purl"]);
+    assert!(program.read("edited.purl") == program.read("even.purl"), "the command is the same work");
+    let free = program.json(&["relax", "laid.purl", "-o", "free.purl", "--stage", "mesh", "--free"]);
+    assert!(rms(&free) < rms(&even), "in space there is nothing to keep stitches uneven");
+
+    program.write("bad.jsonl", "{\"do\":\"relax_mesh\",\"fill\":7}\n");
+    let refused = program.run(&["edit", "laid.purl", "bad.jsonl", "-o", "bad.purl"]);
+    assert_eq!(refused.status, Some(1));
+    assert!(refused.stderr.contains("the fill is 7"), "{}", refused.stderr);
+}
+
 fn opened(name: &str) -> Project {
     Project::from_obj(asset(name).as_ref(), Unit::M, StitchSize::of_width(0.01)).unwrap()
 }

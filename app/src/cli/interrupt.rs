@@ -24,3 +24,10 @@ pub fn progress_bar(length: f64, what: &'static str) -> Result<ProgressBar> {
     bar.set_style(ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} ms, {eta} to go")?);
     Ok(bar)
 }
+
+/// A count of steps on standard error, if that is a terminal, for work that ends when it is done.
+pub fn step_counter(what: &'static str) -> Result<ProgressBar> {
+    let counter = ProgressBar::new_spinner().with_prefix(what);
+    counter.set_style(ProgressStyle::with_template("{spinner} {prefix}: step {pos}, {elapsed}, {msg}")?);
+    Ok(counter)
+}

@@ -67,7 +67,7 @@ enum Verb {
         #[command(flatten)]
         print: Output,
     },
-    /// Lets the yarn find its rest shape, without gravity
+    /// Lets the yarn find its rest shape, without gravity, or the stitches before there is yarn
     Relax {
         project: PathBuf,
         #[arg(short)]
@@ -75,6 +75,9 @@ enum Verb {
         /// What to relax
         #[arg(long, value_enum, default_value = "contact")]
         stage: RelaxStage,
+        /// For the stage mesh: find a shape in space, not on the smooth surface of the input
+        #[arg(long)]
+        free: bool,
         #[command(flatten)]
         print: Output,
     },
@@ -149,6 +152,9 @@ impl Output {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum RelaxStage {
+    /// The stitch mesh on the smooth surface of the input; the yarn is laid again
+    Mesh,
+    /// The yarn with its contacts
     Contact,
 }
 
@@ -234,9 +240,13 @@ fn run(arguments: Arguments) -> Result<()> {
             project.save(&output)?;
             report(&project, print)
         }
-        Verb::Relax { project, output, stage: RelaxStage::Contact, print } => {
-            let project =
-                simulate::relax(Project::open(&project)?).with_context(|| project.display().to_string())?;
+        Verb::Relax { project, output, stage, free, print } => {
+            let opened = Project::open(&project)?;
+            let relaxed = match stage {
+                RelaxStage::Mesh => simulate::relax_stitches(&opened, !free),
+                RelaxStage::Contact => simulate::relax(opened),
+            };
+            let project = relaxed.with_context(|| project.display().to_string())?;
             project.save(&output)?;
             report(&project, print)
         }

@@ -1,12 +1,14 @@
 //! Simulation without a window: relaxing, scenes, frames.
 
-use super::interrupt::{interrupted, progress_bar};
+use super::interrupt::{interrupted, progress_bar, step_counter};
 use super::picture;
 use crate::drawing::Stage;
 use crate::project::Project;
+use crate::relax::relax_mesh;
 use crate::scenes;
 use anyhow::{Result, bail};
 use render::{Gpu, NamedView};
+use sim_core::mesh_relax::RelaxParams;
 use sim_core::{Scene, SettleGoal, Settled, Simulator};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,6 +22,19 @@ const RELAX_LIMIT: f64 = 3.0;
 
 /// Time between two pictures [s].
 const FRAME: f64 = 1.0 / 30.0;
+
+/// Lets the stitches come to rest on the smooth surface of the input mesh, or in space.
+pub fn relax_stitches(project: &Project, surface: bool) -> Result<Project> {
+    let params = RelaxParams { aspect: project.size.height / project.size.width, ..RelaxParams::default() };
+    let counter = step_counter("relaxing stitches")?;
+    let relaxed = relax_mesh(project, params, surface, &mut |_, facts| {
+        counter.set_position(facts.step as u64);
+        counter.set_message(format!("{:.3} stitches in the last step", facts.moved));
+        if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    counter.finish_and_clear();
+    relaxed
+}
 
 /// Lets the yarn come to rest without gravity.
 pub fn relax(project: Project) -> Result<Project> {

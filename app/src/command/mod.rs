@@ -15,9 +15,12 @@ mod tessellation;
 pub use script::{read_script, write_script};
 
 use crate::project::Project;
+use crate::relax::relax_mesh;
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
+use sim_core::mesh_relax::RelaxParams;
 use sim_core::{Material, Scene};
+use std::ops::ControlFlow;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::edit::{End, Survivors, Way};
@@ -205,6 +208,30 @@ pub enum Command {
     },
     /// Puts the yarn back to where it was laid.
     ResetYarn,
+    /// Makes the stitches as even as they can be, and lays the yarn again.
+    RelaxMesh {
+        /// Height of a stitch over its width at rest.
+        #[serde(default = "default_aspect")]
+        aspect: f64,
+        /// How much of the surface the stitches fill at rest, above 0 and at most 1.
+        #[serde(default = "default_fill")]
+        fill: f64,
+        /// Whether they stay on the smooth surface of the input mesh, or find a shape of their own.
+        #[serde(default = "default_surface")]
+        surface: bool,
+    },
+}
+
+fn default_aspect() -> f64 {
+    RelaxParams::default().aspect
+}
+
+fn default_fill() -> f64 {
+    RelaxParams::default().fill
+}
+
+fn default_surface() -> bool {
+    true
 }
 
 impl Command {
@@ -266,6 +293,10 @@ impl Command {
                     fabric.state = None;
                     fabric.facts = None;
                 }
+            }
+            Self::RelaxMesh { aspect, fill, surface } => {
+                let params = RelaxParams { aspect: *aspect, fill: *fill, ..RelaxParams::default() };
+                *project = relax_mesh(project, params, *surface, &mut |_, _| ControlFlow::Continue(()))?;
             }
         }
         Ok((after, survivors))

@@ -70,6 +70,8 @@ impl Command {
             Self::SetMaterial { .. } => "Change yarn".into(),
             Self::SetScene { .. } => "Change scene".into(),
             Self::ResetYarn => "Lay yarn anew".into(),
+            Self::RelaxMesh { surface: true, .. } => "Relax stitches".into(),
+            Self::RelaxMesh { surface: false, .. } => "Relax stitches freely".into(),
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::find_edge;
 use crate::project::{Fabric, Project};
+use crate::relax::mean_width;
 use anyhow::{Result, bail};
 use sim_core::Material;
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
 use stitch_mesh::ids::EdgeId;
-use stitch_mesh::stitch_mesh::StitchMesh;
 use stitch_mesh::tessellate::tessellate as cut;
 
 /// Counts as edited so far, or those of the stitch size.
@@ -39,14 +39,6 @@ pub(super) fn tessellate(project: &mut Project, width_mm: Option<f64>) -> Result
     project.scene.pins.clear();
     project.fabric = Some(Fabric::new(stitches));
     Ok(())
-}
-
-/// Mean width of a stitch along its course edges [m].
-fn mean_width(stitches: &StitchMesh) -> f64 {
-    let mesh = stitches.mesh();
-    let course = mesh.edges().filter(|e| !stitches.is_wale(mesh.edge_sides(*e).0));
-    let (sum, count) = course.fold((0.0, 0), |(sum, n), e| (sum + mesh.edge_length(e), n + 1));
-    sum / f64::from(count.max(1))
 }
 
 fn ids(project: &Project, edges: &[[u32; 2]]) -> Result<Vec<EdgeId>> {

@@ -26,7 +26,7 @@ pub(crate) fn sample() -> YarnCurves {
     use glam::Vec3;
     use stitch_mesh::yarn_curves::YarnCurve;
     let points: Vec<Vec3> = (0..5).map(|i| Vec3::new(i as f32 * 0.1, (i * i) as f32 * 0.01, -0.25)).collect();
-    let open = YarnCurve { points: points.clone(), closed: false, radius: 0.002, color: [0.5, 0.25, 1.0] };
-    let closed = YarnCurve { points: points[..4].to_vec(), closed: true, ..open.clone() };
+    let open = YarnCurve::new(points.clone(), false, 0.002, stitch_mesh::dye::Dye([188, 137, 255]));
+    let closed = YarnCurve::new(points[..4].to_vec(), true, 0.002, stitch_mesh::dye::Dye::UNDYED);
     YarnCurves { curves: vec![open, closed] }
 }

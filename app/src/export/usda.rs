@@ -24,7 +24,7 @@ fn prim(text: &mut String, name: &str, wrap: &str, curves: &[&YarnCurve]) {
     let counts = list(curves.iter().map(|c| c.points.len().to_string()).collect());
     let tuple = |v: [f32; 3]| format!("({}, {}, {})", v[0], v[1], v[2]);
     let points = list(curves.iter().flat_map(|c| &c.points).map(|p| tuple(p.to_array())).collect());
-    let colors = list(curves.iter().map(|c| tuple(c.color)).collect());
+    let colors = list(curves.iter().flat_map(|c| &c.dyes).map(|d| tuple(d.linear())).collect());
     let all = || curves.iter().flat_map(|c| c.points.iter());
     let low = all().fold(glam::Vec3::INFINITY, |a, p| a.min(*p));
     let high = all().fold(glam::Vec3::NEG_INFINITY, |a, p| a.max(*p));
@@ -36,7 +36,7 @@ fn prim(text: &mut String, name: &str, wrap: &str, curves: &[&YarnCurve]) {
          \"catmullRom\"\n        uniform token wrap = \"{wrap}\"\n        int[] curveVertexCounts = [{counts}]\n        \
          point3f[] points = [{points}]\n        float3[] extent = [{extent}]\n        float[] widths = [{}] (\n            \
          interpolation = \"constant\"\n        )\n        color3f[] primvars:displayColor = [{colors}] (\n            \
-         interpolation = \"uniform\"\n        )\n    }}\n",
+         interpolation = \"vertex\"\n        )\n    }}\n",
         2.0 * radius
     );
 }

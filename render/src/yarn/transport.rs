@@ -112,7 +112,7 @@ mod tests {
     use std::f32::consts::TAU;
 
     fn curve(points: Vec<Vec3>, closed: bool) -> YarnCurve {
-        YarnCurve { points, closed, radius: 1e-3, color: [1.0; 3] }
+        YarnCurve::new(points, closed, 1e-3, stitch_mesh::dye::Dye::UNDYED)
     }
 
     /// A closed curve that writhes, so that its frame comes back turned.

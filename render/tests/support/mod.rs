@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 use render::Gpu;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 
 /// The adapter of this machine. Without one these tests fail with a line that says what to install.
@@ -18,7 +19,7 @@ pub fn gpu() -> &'static Gpu {
 pub fn stockinette(wales: usize, courses: usize) -> YarnCurves {
     const PER_LOOP: usize = 10;
     let (width, height) = (5.0e-3, 3.6e-3);
-    let colors = [[0.72, 0.60, 0.42], [0.52, 0.13, 0.10], [0.13, 0.26, 0.34]];
+    let colors = [[221, 203, 173], [191, 101, 89], [101, 139, 158]].map(Dye);
     let row = |j: usize| {
         let point = |i: usize| {
             let t = i as f32 / PER_LOOP as f32;
@@ -26,13 +27,8 @@ pub fn stockinette(wales: usize, courses: usize) -> YarnCurves {
             let y = height * (j as f32 - courses as f32 / 2.0) - 3.25e-3 * (TAU * t).cos();
             Vec3::new(x, y, -0.95e-3 * (2.0 * TAU * t).cos())
         };
-        let color = colors[if j % 8 < 5 { 0 } else { 1 + j / 8 % 2 }];
-        YarnCurve {
-            points: (0..=wales * PER_LOOP).map(point).collect(),
-            closed: false,
-            radius: 0.66e-3,
-            color,
-        }
+        let dye = colors[if j % 8 < 5 { 0 } else { 1 + j / 8 % 2 }];
+        YarnCurve::new((0..=wales * PER_LOOP).map(point).collect(), false, 0.66e-3, dye)
     };
     YarnCurves { curves: (0..courses).map(row).collect() }
 }

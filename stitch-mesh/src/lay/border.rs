@@ -1,31 +1,31 @@
-//! Borders: cast-on, bind-off, and rows joined at their ends (Yuksel et al. §4.3, Fig. 6).
+//! Borders: cast-on, bind-off, live loops, and rows joined at their ends (Yuksel et al. §4.3, Fig. 6).
 //!
 //! Walking along a border with the fabric on the left, one meets bottom edges from left to right, top edges from right to
 //! left, and the ends of rows at wale edges. A run of bottom edges is a **cast-on**: the loops on them are joined one to the
-//! next. A run of top edges is a **bind-off**: one more row of knits in cells beyond the border, each through its fabric loop
-//! and the bind-off loop before it; where the run has an end, the yarn is drawn through the last loop. A border of one kind
-//! all round closes on itself without any end.
+//! next. A run of top edges is a **bind-off** ([`super::bind_off`]); where the run has an end, the yarn is drawn through the
+//! last loop. A border of one kind all round closes on itself without any end, unless a spiral begins or ends there. The
+//! loops of live edges are left open.
 //!
 //! Rows that end at a border, cast-ons and bind-offs are strands with two ends. The ends stand in a circle along the border,
 //! and a strand's end is joined to the neighbouring end of a higher strand: so a flat piece becomes one yarn going back and
 //! forth from cast-on to bind-off, and so do the panels above an armhole. What stays loose gets a tail.
 
-use super::cell::{Cell, FaceFrame};
-use super::{Draft, Port, course_port, wale_port};
+use super::bind_off::{self, BindOffCell, Way};
+use super::draft::{Draft, PieceAt};
+use super::spiral::Spiral;
+use super::{Port, course_port, wale_port};
 use crate::ids::HalfEdgeId;
-use crate::stitch::{Make, Op, Stitch};
+use crate::label::Row;
 use crate::stitch_mesh::StitchMesh;
-use glam::{DVec2, DVec3};
-use smallvec::{SmallVec, smallvec};
+use crate::yarn_net::NodeKind;
+use glam::DVec3;
 use std::collections::{HashMap, HashSet};
-
-/// Height of a bind-off cell, as a part of the face below it.
-const BIND_OFF_HEIGHT: f64 = 0.7;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Bottom,
     Top,
+    Live,
     Wale,
 }
 
@@ -39,46 +39,69 @@ struct Strand {
     bind_off: Vec<BindOffCell>,
 }
 
-struct BindOffCell {
-    edge: HalfEdgeId,
-    left: Port,
-    right: Port,
-}
+/// The ports at which the bind-off yarn leaves the cell above each bound-off edge, on its right.
+pub(super) type BoundOff = HashMap<HalfEdgeId, Port>;
 
-/// Adds cast-on, bind-off and row joins to a draft.
-pub fn finish(stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft) {
+/// Adds cast-on, bind-off, live loops and row joins to a draft.
+pub(super) fn finish(
+    stitches: &StitchMesh,
+    rows: &[Row],
+    vertex_normals: &[DVec3],
+    spirals: &[Spiral],
+    draft: &mut Draft,
+) -> BoundOff {
     let mesh = stitches.mesh();
     let mut height = vec![0.0; mesh.face_count()];
-    for (r, row) in stitches.rows().iter().enumerate() {
+    for (r, row) in rows.iter().enumerate() {
         row.faces.iter().for_each(|f| height[f.index()] = r as f64);
     }
     let height_at = |h: &HalfEdgeId| height[mesh.face(*h).index()];
+    let mut bound_off = BoundOff::new();
     // The loose ends in the order of each border, with their heights, and the bind-offs.
     let mut circles: Vec<Vec<(Port, f64)>> = Vec::new();
     let mut strands: Vec<Strand> = Vec::new();
     for ring in mesh.borders() {
         let mut circle = Vec::new();
-        for (side, run) in runs(stitches, &ring) {
+        for (side, mut run) in runs(stitches, &ring) {
             let closed = run.len() == ring.len();
             match side {
                 Side::Wale => circle.push((wale_port(run[0]), height_at(&run[0]))),
+                Side::Live => run.iter().for_each(|h| leave_live(stitches, vertex_normals, *h, draft)),
                 Side::Bottom => {
-                    let ends = cast_on(&run, closed, draft);
+                    let spiral = spirals
+                        .iter()
+                        .find(|s| closed && begin_at_face(&mut run, mesh.face(s.first), stitches));
+                    let ends = cast_on(&run, draft);
                     let lowest = run.iter().map(height_at).fold(f64::INFINITY, f64::min);
-                    if !closed {
-                        circle.extend(ends.map(|port| (port, lowest - 0.5)));
+                    match (spiral, closed) {
+                        (Some(spiral), _) => draft.join(ends[1], spiral.ends[0]),
+                        (None, true) => draft.join(ends[1], ends[0]),
+                        (None, false) => circle.extend(ends.map(|port| (port, lowest - 0.5))),
                     }
                 }
                 Side::Top => {
-                    let cells = bind_off_cells(&run, draft);
+                    run.reverse(); // left to right, to begin where a spiral ends
+                    let spiral = spirals
+                        .iter()
+                        .find(|s| closed && begin_at_face(&mut run, mesh.face(s.last_row), stitches));
+                    run.reverse();
+                    let cells = bind_off::cells(&run, draft);
+                    bound_off.extend(cells.iter().map(|c| (c.edge, c.right)));
                     let ends = [cells[0].left, cells[cells.len() - 1].right];
-                    if closed {
-                        draft.join(ends[0], ends[1]);
-                        bind_off(stitches, vertex_normals, &cells, BindOff::Round, draft);
-                    } else {
-                        let highest = run.iter().map(height_at).fold(0.0, f64::max) + 0.5;
-                        strands.push(Strand { ends, height: highest, bind_off: cells });
-                        circle.extend([(ends[1], highest), (ends[0], highest)]);
+                    match (spiral, closed) {
+                        (Some(spiral), _) => {
+                            draft.join(spiral.ends[1], ends[0]);
+                            bind_off::lay(stitches, vertex_normals, &cells, Way::Rightwards, draft);
+                        }
+                        (None, true) => {
+                            draft.join(ends[0], ends[1]);
+                            bind_off::lay(stitches, vertex_normals, &cells, Way::Round, draft);
+                        }
+                        (None, false) => {
+                            let highest = run.iter().map(height_at).fold(0.0, f64::max) + 0.5;
+                            strands.push(Strand { ends, height: highest, bind_off: cells });
+                            circle.extend([(ends[1], highest), (ends[0], highest)]);
+                        }
                     }
                 }
             }
@@ -86,12 +109,12 @@ pub fn finish(stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft
         circles.push(circle);
     }
     // Whatever else ends at a border is found by following its yarn from end to end.
-    let piece_at = draft.piece_at_ports();
+    let piece_at = PieceAt::of(draft);
     let mut ended: HashSet<Port> = strands.iter().flat_map(|s| s.ends).collect();
     let heights: HashMap<Port, f64> = circles.iter().flatten().copied().collect();
     for (port, height) in circles.iter().flatten() {
         if ended.insert(*port)
-            && let (_, Some(other)) = draft.follow(&piece_at, *port)
+            && let Some(other) = piece_at.end_of(draft, *port)
             && ended.insert(other)
         {
             let height = heights.get(&other).map_or(*height, |h| h.min(*height));
@@ -100,6 +123,7 @@ pub fn finish(stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft
     }
     let circles = circles.into_iter().map(|c| c.into_iter().map(|(port, _)| port).collect()).collect();
     join_strands(stitches, vertex_normals, &strands, circles, draft);
+    bound_off
 }
 
 /// Cuts a border into runs of one kind; wale edges come one by one.
@@ -107,6 +131,7 @@ fn runs(stitches: &StitchMesh, ring: &[HalfEdgeId]) -> Vec<(Side, Vec<HalfEdgeId
     let side = |h: HalfEdgeId| match (stitches.is_wale(h), stitches.is_bottom(h)) {
         (true, _) => Side::Wale,
         (false, true) => Side::Bottom,
+        (false, false) if stitches.is_live(h) => Side::Live,
         (false, false) => Side::Top,
     };
     let breaks = |a: HalfEdgeId, b: HalfEdgeId| side(b) == Side::Wale || side(a) != side(b);
@@ -122,122 +147,33 @@ fn runs(stitches: &StitchMesh, ring: &[HalfEdgeId]) -> Vec<(Side, Vec<HalfEdgeId
     runs
 }
 
+/// Turns a closed run, which goes from left to right, until it begins with an edge of `face`. False if it has none.
+fn begin_at_face(run: &mut [HalfEdgeId], face: crate::ids::FaceId, stitches: &StitchMesh) -> bool {
+    let n = run.len();
+    let of_face = |i: usize| stitches.mesh().face(run[i % n]) == face;
+    let Some(at) = (0..n).find(|i| of_face(*i) && (n == 1 || !of_face(i + n - 1))) else { return false };
+    run.rotate_left(at);
+    true
+}
+
 /// Joins the loops on a run of bottom edges, left to right. Returns the ends.
-fn cast_on(run: &[HalfEdgeId], closed: bool, draft: &mut Draft) -> [Port; 2] {
+fn cast_on(run: &[HalfEdgeId], draft: &mut Draft) -> [Port; 2] {
     for pair in run.windows(2) {
         draft.join(course_port(pair[0], 1), course_port(pair[1], 0));
     }
-    let ends = [course_port(run[0], 0), course_port(run[run.len() - 1], 1)];
-    if closed {
-        draft.join(ends[1], ends[0]);
-    }
-    ends
+    [course_port(run[0], 0), course_port(run[run.len() - 1], 1)]
 }
 
-/// Cells with joined ports above a run of top edges (which come right to left).
-fn bind_off_cells(run: &[HalfEdgeId], draft: &mut Draft) -> Vec<BindOffCell> {
-    let cells: Vec<BindOffCell> = run
-        .iter()
-        .rev()
-        .map(|h| BindOffCell { edge: *h, left: draft.new_port(), right: draft.new_port() })
-        .collect();
-    for pair in cells.windows(2) {
-        draft.join(pair[0].right, pair[1].left);
-    }
-    // Until the cells are laid, the legs of a loop are joined as they will be through its cell: so its yarn can be followed.
-    for h in run {
-        draft.join(course_port(*h, 0), course_port(*h, 1));
-    }
-    cells
-}
-
-/// The way in which a bind-off is worked.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum BindOff {
-    Rightwards,
-    Leftwards,
-    Round,
-}
-
-/// Lays the bind-off stitches. Returns, for one with an end, the port at which the yarn leaves after it has been drawn
-/// through the last loop.
-fn bind_off(
-    stitches: &StitchMesh,
-    vertex_normals: &[DVec3],
-    cells: &[BindOffCell],
-    way: BindOff,
-    draft: &mut Draft,
-) -> Option<Port> {
+/// Closes the loop on a live edge over a node of its own, as over a needle.
+fn leave_live(stitches: &StitchMesh, vertex_normals: &[DVec3], h: HalfEdgeId, draft: &mut Draft) {
     let mesh = stitches.mesh();
-    let mut previous: Option<[Port; 2]> = None;
-    let n = cells.len();
-    // Going round, the first stitch takes the last one's loop.
-    let tops: Vec<[Port; 2]> = (0..n).map(|_| [draft.new_port(), draft.new_port()]).collect();
-    let order: Vec<usize> = if way == BindOff::Leftwards { (0..n).rev().collect() } else { (0..n).collect() };
-    if way == BindOff::Round {
-        previous = tops.last().copied();
-    }
-    for i in order {
-        let BindOffCell { edge, left, right } = cells[i];
-        let face = mesh.face(edge);
-        let frame = FaceFrame::of_face(stitches, vertex_normals, face);
-        let up = (frame.position(DVec2::new(0.5, 0.9)) - frame.position(DVec2::new(0.5, 0.1))) / 0.8
-            * BIND_OFF_HEIGHT;
-        let (from, to) = (mesh.position(mesh.tip(edge)), mesh.position(mesh.origin(edge)));
-        let normal = vertex_normals[mesh.tip(edge).index()] + vertex_normals[mesh.origin(edge).index()];
-        let frame = FaceFrame::beyond_border([from, to, to + up, from + up], normal.normalize_or(DVec3::Z));
-        let legs = [draft.new_port(), draft.new_port()];
-        draft.join(legs[0], course_port(edge, 1));
-        draft.join(legs[1], course_port(edge, 0));
-        let mut bottoms: SmallVec<[[Port; 2]; 2]> = smallvec![legs];
-        if let Some(previous) = previous {
-            let passed_over = [draft.new_port(), draft.new_port()];
-            draft.join(passed_over[0], previous[0]);
-            draft.join(passed_over[1], previous[1]);
-            bottoms.push(passed_over);
-        }
-        // The bind-off loop before is passed over the fabric loop: it lies in front.
-        let stack = (0..bottoms.len() as u8).rev().collect();
-        let knit = Stitch { ops: smallvec![Op { make: Make::Knit, twist: 0 }], stack };
-        Cell { left, right, bottoms, tops: smallvec![tops[i]] }.lay(&knit, &frame, draft);
-        previous = Some(tops[i]);
-        let is_last = i + 1 == n && way == BindOff::Rightwards || i == 0 && way == BindOff::Leftwards;
-        if is_last {
-            return Some(fasten(
-                tops[i],
-                if way == BindOff::Leftwards { left } else { right },
-                way,
-                [from, to],
-                up,
-                normal,
-                draft,
-            ));
-        }
-    }
-    None
-}
-
-/// Draws the yarn that leaves at `from` through the last loop.
-fn fasten(
-    last: [Port; 2],
-    from: Port,
-    way: BindOff,
-    [left, right]: [DVec3; 2],
-    up: DVec3,
-    normal: DVec3,
-    draft: &mut Draft,
-) -> Port {
-    let along = (right - left) * if way == BindOff::Leftwards { -1.0 } else { 1.0 };
-    let corners = [left, right, right + up, left + up].map(|c| c + along * 0.8 + up * 0.3);
-    let frame = FaceFrame::beyond_border(corners, normal.normalize_or(DVec3::Z));
-    let mut port = || draft.new_port();
-    let (entry, exit, legs) = (port(), port(), [port(), port()]);
-    draft.join(entry, from);
-    legs.iter().zip(last).for_each(|(a, b)| draft.join(*a, b));
-    let (left, right) = if way == BindOff::Leftwards { (exit, entry) } else { (entry, exit) };
-    let gather = Stitch { ops: smallvec![], stack: smallvec![0] };
-    Cell { left, right, bottoms: smallvec![legs], tops: smallvec![] }.lay(&gather, &frame, draft);
-    exit
+    let (left, right) = (mesh.tip(h), mesh.origin(h));
+    let face = mesh.face(h);
+    let up = stitches.up(face) * 0.4;
+    let normal = (vertex_normals[left.index()] + vertex_normals[right.index()]).normalize_or(DVec3::Z);
+    let middle = 0.5 * (mesh.position(left) + mesh.position(right));
+    let node = draft.add_node(middle + up, normal, NodeKind::Free, up);
+    draft.join_through(node, [course_port(h, 1), course_port(h, 0)], stitches.dyes()[face.index()]);
 }
 
 /// Joins strands end to end, always upwards, and lays each bind-off in the direction in which the yarn reaches it.
@@ -272,8 +208,8 @@ fn join_strands(
             let end = strand.ends[1 - entered];
             let mut leaves = end;
             if !strand.bind_off.is_empty() {
-                let way = if entered == 0 { BindOff::Rightwards } else { BindOff::Leftwards };
-                leaves = bind_off(stitches, vertex_normals, &strand.bind_off, way, draft).unwrap_or(end);
+                let way = if entered == 0 { Way::Rightwards } else { Way::Leftwards };
+                leaves = bind_off::lay(stitches, vertex_normals, &strand.bind_off, way, draft).unwrap_or(end);
             }
             let higher = neighbours.get(&end).into_iter().flatten().filter_map(|port| {
                 let (s, side) = *strand_at.get(port)?;

@@ -16,153 +16,64 @@
 //! yarns of Yuksel et al. Fig. 8 come out by themselves.
 //!
 //! # Practice
-//! 1. `cell`: nodes, pieces of yarn and stitch contacts of each face;
-//! 2. `border`: cast-on along bottom edges, bind-off along top edges, rows joined at their ends so that a flat piece is one
-//!    yarn going back and forth;
-//! 3. `trace`: pieces joined into yarns, arc lengths measured.
+//! 1. `template`: the yarn of a stitch; `draft`: put on every face, and ports joined across edges;
+//! 2. `cable`: loops that change places on their way up;
+//! 3. `spiral`: closed rows joined into one another, where asked for;
+//! 4. `border`: cast-on along bottom edges, bind-off along top edges (`bind_off`), rows joined at their ends so that a flat
+//!    piece is one yarn going back and forth;
+//! 5. `seam`: sewing yarns;
+//! 6. `trace`: pieces joined into yarns, arc lengths measured.
 //!
 //! The paper makes the first row of faces the cast-on. Here cast-on and bind-off lie outside of the mesh, so that every face
 //! stays a stitch that can be chosen, and borders may lie anywhere.
 //!
-//! Rest lengths are the laid lengths: the fabric keeps the size at which the artist drew it.
+//! Rest lengths are the laid lengths: the fabric keeps the size at which the artist drew it. Where yarn has to be shorter
+//! than it lies at first (cables, seams), the net says by how much it is taken in.
+//!
+//! # Speed
+//! Templates are made once for each kind of stitch, so placing a node costs one weighted sum of corners, and following yarn
+//! is a walk over flat arrays.
 
+mod bind_off;
 mod border;
-mod cell;
+mod cable;
+mod draft;
+mod seam;
+mod spiral;
+mod template;
 mod trace;
 
 #[cfg(test)]
+mod marks_tests;
+#[cfg(test)]
 mod tests;
 
-use crate::ids::{FaceId, HalfEdgeId, NodeId};
+use crate::ids::HalfEdgeId;
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::YarnNet;
-use cell::{Cell, FaceFrame};
-use glam::DVec3;
-use smallvec::SmallVec;
+use draft::Draft;
 
 /// Lays the yarn of a stitch mesh. The same mesh always gives the same net.
 pub fn lay(stitches: &StitchMesh) -> YarnNet {
-    let mut draft = Draft::new(stitches.mesh().half_edge_count());
     let normals = stitches.mesh().vertex_normals();
-    for face in stitches.mesh().faces() {
-        let frame = FaceFrame::of_face(stitches, &normals, face);
-        Cell::of_face(stitches, face).lay(stitches.stitch(face), &frame, &mut draft);
-    }
-    for h in (0..stitches.mesh().half_edge_count()).map(HalfEdgeId::new) {
-        if let Some(twin) = stitches.mesh().twin(h) {
-            if stitches.is_wale(h) {
-                draft.join(wale_port(h), wale_port(twin));
-            } else {
-                draft.join(course_port(h, 0), course_port(twin, 1));
-            }
-        }
-    }
-    border::finish(stitches, &normals, &mut draft);
-    trace::trace(draft)
+    let mut draft = Draft::of_faces(stitches, &normals);
+    cable::cross(stitches, &normals, &mut draft);
+    let rows = stitches.rows();
+    let spirals = if stitches.marks().spiral { spiral::wind(stitches, &rows, &mut draft) } else { vec![] };
+    let bound_off = border::finish(stitches, &rows, &normals, &spirals, &mut draft);
+    seam::sew(stitches, &normals, &bound_off, &mut draft);
+    trace::trace(stitches, draft)
 }
 
-/// A place where yarn crosses an edge.
-type Port = usize;
+/// A place where yarn crosses an edge: two for each half-edge of the mesh, and more beyond its borders.
+type Port = u32;
 
 /// Where the yarn of a row crosses a wale edge, seen from the face of `h`.
 fn wale_port(h: HalfEdgeId) -> Port {
-    2 * h.index()
+    2 * h.0
 }
 
 /// Where a leg crosses a course edge, seen from the face of `h`: 0 near its origin, 1 near its tip.
-fn course_port(h: HalfEdgeId, place: usize) -> Port {
-    2 * h.index() + place
-}
-
-/// A visit before the yarns are known: its place in [`Draft::visits`].
-type DraftVisit = usize;
-
-/// A stretch of yarn inside one cell, from port to port.
-struct Piece {
-    from: Port,
-    visits: SmallVec<[DraftVisit; 4]>,
-    to: Port,
-}
-
-struct DraftNode {
-    position: DVec3,
-    normal: DVec3,
-    /// Along the row, out of the cell on the nearer side: where the yarn goes when it turns back or ends here [m].
-    outward: DVec3,
-    face: Option<FaceId>,
-    /// Front to back.
-    stack: SmallVec<[DraftVisit; 3]>,
-}
-
-struct DraftContact {
-    handedness: f64,
-    new: [DraftVisit; 2],
-    old: SmallVec<[[DraftVisit; 2]; 1]>,
-}
-
-/// Pieces of yarn and how they are joined, before they are yarns.
-#[derive(Default)]
-struct Draft {
-    nodes: Vec<DraftNode>,
-    /// The node of every visit.
-    visits: Vec<NodeId>,
-    pieces: Vec<Piece>,
-    contacts: Vec<DraftContact>,
-    /// For every port the one it is joined to.
-    joined: Vec<Option<Port>>,
-}
-
-impl Draft {
-    fn new(half_edges: usize) -> Self {
-        Self { joined: vec![None; 2 * half_edges], ..Self::default() }
-    }
-
-    fn node(&mut self, node: DraftNode) -> NodeId {
-        self.nodes.push(node);
-        NodeId::new(self.nodes.len() - 1)
-    }
-
-    fn visit(&mut self, node: NodeId) -> DraftVisit {
-        self.visits.push(node);
-        self.visits.len() - 1
-    }
-
-    /// For every port the piece that begins or ends there.
-    fn piece_at_ports(&self) -> Vec<Option<usize>> {
-        let mut at = vec![None; self.joined.len()];
-        for (i, piece) in self.pieces.iter().enumerate() {
-            at[piece.from] = Some(i);
-            at[piece.to] = Some(i);
-        }
-        at
-    }
-
-    /// Follows the yarn that enters a piece at port `from`: the pieces, each with whether it is passed from its beginning,
-    /// and the port at which the yarn ends loose. A ring ends where it began, without one.
-    fn follow(&self, piece_at: &[Option<usize>], from: Port) -> (Vec<(usize, bool)>, Option<Port>) {
-        let mut run: Vec<(usize, bool)> = Vec::new();
-        let mut entry = from;
-        while let Some(piece) = piece_at[entry] {
-            let forward = entry == self.pieces[piece].from;
-            run.push((piece, forward));
-            let exit = if forward { self.pieces[piece].to } else { self.pieces[piece].from };
-            match self.joined[exit].filter(|next| piece_at[*next].is_some()) {
-                Some(next) if next == from => return (run, None),
-                Some(next) => entry = next,
-                None => return (run, Some(exit)),
-            }
-        }
-        (run, None)
-    }
-
-    /// A port that lies on no half-edge: at cast-on, bind-off and ends.
-    fn new_port(&mut self) -> Port {
-        self.joined.push(None);
-        self.joined.len() - 1
-    }
-
-    fn join(&mut self, a: Port, b: Port) {
-        self.joined[a] = Some(b);
-        self.joined[b] = Some(a);
-    }
+fn course_port(h: HalfEdgeId, place: u32) -> Port {
+    2 * h.0 + place
 }

@@ -12,7 +12,7 @@ use crate::yarn_net::YarnNet;
 use proptest::prelude::*;
 
 /// Everything that a net promises.
-fn check(net: &YarnNet) {
+pub(super) fn check(net: &YarnNet) {
     let mut seen = vec![0; net.visits.len()];
     for (n, node) in net.nodes.iter().enumerate() {
         assert!(!node.visits.is_empty(), "node {n} has no yarn");

@@ -1,131 +1,186 @@
 //! From pieces to yarns: joined pieces are followed, loose ends get tails, arc lengths are measured.
 
-use super::{Draft, DraftNode, DraftVisit, Piece, Port};
+use super::draft::{Draft, Piece, PieceAt};
+use super::{Port, course_port};
+use crate::dye::Dye;
 use crate::ids::{NodeId, VisitId, YarnId};
-use crate::yarn_net::{Node, StitchContact, Visit, Yarn, YarnNet};
+use crate::stitch_mesh::StitchMesh;
+use crate::yarn_net::{Loop, NodeKind, TakenIn, Visit, Yarn, YarnNet};
 use smallvec::SmallVec;
 
-/// Colour of yarn that nobody has dyed, linear RGB: undyed wool.
-const UNDYED: [f32; 3] = [0.72, 0.62, 0.47];
-
-/// Length of a tail, in steps of [`DraftNode::outward`].
+/// Length of a tail, in steps of [`Draft::outward`].
 const TAIL: f64 = 1.2;
 
+/// Not visited by any yarn.
+const NONE: u32 = u32::MAX;
+
 /// Makes the net of a draft.
-pub fn trace(mut draft: Draft) -> YarnNet {
-    let piece_at = draft.piece_at_ports();
+pub fn trace(stitches: &StitchMesh, draft: Draft) -> YarnNet {
+    let piece_at = PieceAt::of(&draft);
     let mut used = vec![false; draft.pieces.len()];
-    let mut net = YarnNet::default();
-    let mut final_visit = Vec::new();
-    let is_loose =
-        |draft: &Draft, port: Port| draft.joined[port].is_none_or(|other| piece_at[other].is_none());
+    let mut tracer = Tracer {
+        crossed: vec![NONE; 2 * stitches.mesh().half_edge_count()],
+        number: vec![NONE; draft.visits.len()],
+        net: YarnNet { visits: Vec::with_capacity(draft.visits.len() + 2), ..YarnNet::default() },
+        dye: None,
+        draft,
+    };
     // Open yarns first, from their loose ends, then what is left: rings.
     for open in [true, false] {
-        for start in 0..draft.pieces.len() {
-            let Piece { from, to, .. } = draft.pieces[start];
+        for start in 0..used.len() {
+            let Piece { from, to, .. } = tracer.draft.pieces[start];
             let from = match open {
-                true if is_loose(&draft, from) => from,
-                true if is_loose(&draft, to) => to,
+                _ if used[start] => continue,
+                true if piece_at.is_loose(&tracer.draft, from) => from,
+                true if piece_at.is_loose(&tracer.draft, to) => to,
                 false => from,
                 true => continue,
             };
-            if used[start] {
-                continue;
-            }
-            let mut run: Vec<DraftVisit> = Vec::new();
-            for (piece, forward) in draft.follow(&piece_at, from).0 {
-                used[piece] = true;
-                let visits = &draft.pieces[piece].visits;
-                if forward { run.extend(visits) } else { run.extend(visits.iter().rev()) }
-            }
-            let run = with_turns(&mut draft, run, open);
-            if run.len() > 1 {
-                add_yarn(&mut net, &draft, &run, !open, &mut final_visit);
-            }
+            tracer.follow(&piece_at, from, open, &mut used);
         }
     }
-    let place = |v: &DraftVisit| final_visit.get(*v).copied().flatten();
-    net.contacts = draft
-        .contacts
-        .iter()
-        .filter_map(|c| {
-            let pair = |[a, b]: &[DraftVisit; 2]| Some([place(a)?, place(b)?]);
-            let old: Option<SmallVec<_>> = c.old.iter().map(pair).collect();
-            Some(StitchContact { handedness: c.handedness, new: pair(&c.new)?, old: old? })
-        })
-        .collect();
-    net.nodes = draft
-        .nodes
-        .iter()
-        .map(|n| Node {
-            position: n.position,
-            normal: n.normal,
-            visits: n.stack.iter().filter_map(place).collect(),
-            face: n.face,
-        })
-        .collect();
-    net
+    tracer.finish(stitches)
 }
 
-/// Puts a node of its own where a yarn turns back to the node it comes from (a segment without length), and at loose ends.
-fn with_turns(draft: &mut Draft, run: Vec<DraftVisit>, open: bool) -> Vec<DraftVisit> {
-    let mut out = Vec::with_capacity(run.len() + 2);
-    if let (true, Some(first)) = (open, run.first()) {
-        out.push(free_node(draft, *first, TAIL));
+struct Tracer {
+    draft: Draft,
+    net: YarnNet,
+    /// For every visit of the draft its number in the net.
+    number: Vec<u32>,
+    /// For every port of a half-edge how many visits there had been when the yarn crossed it.
+    crossed: Vec<u32>,
+    /// The colour that goes on.
+    dye: Option<Dye>,
+}
+
+impl Tracer {
+    /// Follows the yarn that enters a piece at `from` to its end, or round.
+    fn follow(&mut self, piece_at: &PieceAt, from: Port, open: bool, used: &mut [bool]) {
+        let start = self.net.visits.len();
+        self.dye = None;
+        let mut entry = from;
+        while let Some(at) = piece_at.get(entry) {
+            used[at] = true;
+            let Piece { from: begin, to: end, first, end: last, dye, own } = self.draft.pieces[at];
+            let forward = entry == begin;
+            if own {
+                self.dye = Some(dye);
+            }
+            self.cross(entry);
+            for i in 0..last - first {
+                let visit = if forward { first + i } else { last - 1 - i };
+                self.pass(visit, self.dye.unwrap_or(dye), start, open);
+            }
+            let exit = if forward { end } else { begin };
+            self.cross(exit);
+            match self.draft.other_side(exit) {
+                Some(next) if next != from => entry = next,
+                _ => break,
+            }
+        }
+        self.end_yarn(start, open);
     }
-    for (i, visit) in run.iter().enumerate() {
-        out.push(*visit);
-        let next = if i + 1 < run.len() { Some(run[i + 1]) } else { run.first().copied().filter(|_| !open) };
-        if next.is_some_and(|n| n != *visit && draft.visits[n] == draft.visits[*visit]) {
-            out.push(free_node(draft, *visit, 1.0));
+
+    fn cross(&mut self, port: Port) {
+        if let Some(crossed) = self.crossed.get_mut(port as usize) {
+            *crossed = self.net.visits.len() as u32;
         }
     }
-    if let (true, Some(last)) = (open, run.last()) {
-        out.push(free_node(draft, *last, TAIL));
+
+    /// Adds a visit to the yarn that began at `start`; before it a tail where a yarn begins, or a node of its own where it
+    /// turns back to the node it comes from (a segment without length).
+    fn pass(&mut self, visit: u32, dye: Dye, start: usize, open: bool) {
+        let node = self.draft.visits[visit as usize];
+        if self.net.visits.len() == start {
+            if open {
+                self.free_node(node, TAIL, dye);
+            }
+        } else if self.net.visits.last().is_some_and(|v| v.node == node) {
+            self.free_node(node, 1.0, dye);
+        }
+        self.number[visit as usize] = self.net.visits.len() as u32;
+        self.push(node, dye);
     }
-    out
+
+    fn push(&mut self, node: NodeId, dye: Dye) {
+        self.net.visits.push(Visit { node, yarn: YarnId::new(self.net.yarns.len()), u: 0.0, dye });
+    }
+
+    /// Adds a node with one visit, outwards of `beside`.
+    fn free_node(&mut self, beside: NodeId, steps: f64, dye: Dye) {
+        let outward = self.draft.outward[beside.index()];
+        let at = &self.draft.nodes[beside.index()];
+        let (position, normal) = (at.position + outward * steps, at.normal);
+        let node = self.draft.add_node(position, normal, NodeKind::Free, outward);
+        let visit = self.draft.visits.len() as u32;
+        self.draft.visits.push(node);
+        self.draft.nodes[node.index()].visits.push(VisitId(visit));
+        self.number.push(self.net.visits.len() as u32);
+        self.push(node, dye);
+    }
+
+    fn end_yarn(&mut self, start: usize, open: bool) {
+        let (Some(first), Some(last)) =
+            (self.net.visits.get(start).copied(), self.net.visits.last().copied())
+        else {
+            return;
+        };
+        if open {
+            self.free_node(last.node, TAIL, last.dye);
+        } else if first.node == last.node {
+            self.free_node(last.node, 1.0, last.dye);
+        }
+        let mut u = 0.0;
+        let position = |v: &Visit| self.draft.nodes[v.node.index()].position;
+        let mut before = position(&first);
+        for visit in &mut self.net.visits[start..] {
+            let here = position(visit);
+            u += before.distance(here);
+            visit.u = u;
+            before = here;
+        }
+        self.net.yarns.push(Yarn {
+            visits: start as u32..self.net.visits.len() as u32,
+            period: (!open).then_some(u + before.distance(position(&first))),
+        });
+    }
+
+    fn finish(mut self, stitches: &StitchMesh) -> YarnNet {
+        let mut net = self.net;
+        let number = &self.number;
+        let renumber = |v: &mut VisitId| v.0 = number[v.index()];
+        for node in &mut self.draft.nodes {
+            node.visits.iter_mut().for_each(renumber);
+        }
+        for contact in &mut self.draft.contacts {
+            contact.new.iter_mut().for_each(renumber);
+            contact.old.iter_mut().flatten().for_each(renumber);
+        }
+        net.nodes = self.draft.nodes;
+        net.contacts = self.draft.contacts;
+        // A segment begins at whichever of its ends the yarn meets first.
+        let segment = |v: u32| VisitId(number[v as usize].min(number[v as usize + 1]));
+        net.taken_in = self
+            .draft
+            .take_in
+            .iter()
+            .map(|(v, length)| TakenIn { segment: segment(*v), length: *length })
+            .collect();
+        net.loops = loops(stitches, &self.crossed);
+        net
+    }
 }
 
-/// A node with one visit, outwards of the node of `visit`.
-fn free_node(draft: &mut Draft, visit: DraftVisit, steps: f64) -> DraftVisit {
-    let beside = &draft.nodes[draft.visits[visit].index()];
-    let node = DraftNode {
-        position: beside.position + beside.outward * steps,
-        normal: beside.normal,
-        outward: beside.outward,
-        face: None,
-        stack: SmallVec::new(),
-    };
-    let node = draft.node(node);
-    let visit = draft.visit(node);
-    draft.nodes[node.index()].stack.push(visit);
-    visit
-}
-
-fn add_yarn(
-    net: &mut YarnNet,
-    draft: &Draft,
-    run: &[DraftVisit],
-    closed: bool,
-    final_visit: &mut Vec<Option<VisitId>>,
-) {
-    let yarn = YarnId::new(net.yarns.len());
-    let start = net.visits.len() as u32;
-    let position = |v: DraftVisit| draft.nodes[draft.visits[v].index()].position;
-    final_visit.resize(draft.visits.len(), None); // turns and tails have been added
-    let mut u = 0.0;
-    let mut before: Option<DraftVisit> = None;
-    for visit in run {
-        u += before.map_or(0.0, |b| position(b).distance(position(*visit)));
-        final_visit[*visit] = Some(VisitId::new(net.visits.len()));
-        let node: NodeId = draft.visits[*visit];
-        net.visits.push(Visit { node, yarn, u });
-        before = Some(*visit);
+/// The loops of all stitches that go up into a stitch or a border.
+fn loops(stitches: &StitchMesh, crossed: &[u32]) -> Vec<Loop> {
+    let mesh = stitches.mesh();
+    let mut loops = Vec::with_capacity(stitches.loop_count());
+    for face in mesh.faces() {
+        let ends: SmallVec<[_; 4]> = stitches.tops(face).collect();
+        for top in ends.into_iter().filter(|h| mesh.twin(*h).is_none_or(|t| stitches.is_bottom(t))) {
+            let [left, right] = [1, 0].map(|place| crossed[course_port(top, place) as usize]);
+            loops.push(Loop { top, head: left.min(right)..left.max(right) });
+        }
     }
-    let closing = position(run[run.len() - 1]).distance(position(run[0]));
-    net.yarns.push(Yarn {
-        visits: start..net.visits.len() as u32,
-        period: closed.then_some(u + closing),
-        color: UNDYED,
-    });
+    loops
 }

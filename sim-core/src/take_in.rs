@@ -1,0 +1,149 @@
+//! Taking in: segments that a net lays longer than they are to be are shortened while the simulation begins.
+//!
+//! The legs of a cable are laid straight across it, sewing yarn straight across the gap; a knitter would have pulled both
+//! tight. Cut to length at once they would jump, so the yarn is drawn out of them over [`TIME`]. Drawing a length out of
+//! a segment moves all later sliding coordinates of its yarn down by it, and makes a closed yarn so much shorter.
+//!
+//! How far that has come is part of the state ([`YarnState::taken_in`], 0 to 1), so a fabric that is opened again goes on.
+
+use crate::model::Model;
+use stitch_mesh::yarn_net::{YarnNet, YarnState};
+
+/// How long taking in takes [s].
+const TIME: f64 = 0.4;
+
+/// What is taken in of a net.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TakeIn {
+    /// By how much the sliding coordinate of each visit goes down in all, [visit_count], or empty if nothing is taken in [m].
+    total: Vec<f64>,
+    /// By how much the whole of each yarn becomes shorter, [yarn_count] [m].
+    of_yarn: Vec<f64>,
+}
+
+impl TakeIn {
+    pub fn new(net: &YarnNet) -> Self {
+        if net.taken_in.is_empty() {
+            return Self::default();
+        }
+        let mut total = vec![0.0; net.visits.len()];
+        for taken in &net.taken_in {
+            if let Some(next) = net.next(taken.segment) {
+                // Where a closed yarn meets its beginning only its whole becomes shorter.
+                let at = if next > taken.segment { Some(next) } else { None };
+                at.into_iter().for_each(|v| total[v.index()] += taken.length);
+            }
+        }
+        let mut of_yarn = vec![0.0; net.yarns.len()];
+        for taken in &net.taken_in {
+            of_yarn[net.visits[taken.segment.index()].yarn.index()] += taken.length;
+        }
+        for yarn in &net.yarns {
+            let mut sum = 0.0;
+            for v in yarn.visits.clone() {
+                sum += total[v as usize];
+                total[v as usize] = sum;
+            }
+        }
+        Self { total, of_yarn }
+    }
+
+    /// Shortens the turn of the elements where closed yarns meet their beginning, by `part` of the whole.
+    pub fn shorten_turns(&self, model: &mut Model, part: f64) {
+        if self.total.is_empty() || part == 0.0 {
+            return;
+        }
+        let net = model.net.clone();
+        let shorter =
+            |visit: stitch_mesh::ids::VisitId| part * self.of_yarn[net.visits[visit.index()].yarn.index()];
+        for segment in &mut model.segments {
+            shorten(&mut segment.stencil.turn, shorter(segment.stencil.visits[0]));
+        }
+        for bend in &mut model.bends {
+            shorten(&mut bend.stencil.turn, shorter(bend.stencil.visits[0]));
+        }
+    }
+
+    /// Takes in as much as a step of `h` [s] does, and moves the anchors of friction along.
+    pub fn step(&self, model: &mut Model, state: &mut YarnState, anchor: &mut [f64], h: f64) {
+        let part = (h / TIME).min(1.0 - state.taken_in);
+        if self.total.is_empty() || part <= 0.0 {
+            return;
+        }
+        for ((u, anchor), total) in state.sliding.iter_mut().zip(anchor).zip(&self.total) {
+            *u -= part * total;
+            *anchor -= part * total;
+        }
+        state.taken_in += part;
+        self.shorten_turns(model, part);
+    }
+}
+
+fn shorten<const K: usize>(turn: &mut [f64; K], length: f64) {
+    turn.iter_mut().filter(|t| **t > 0.0).for_each(|t| *t -= length);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Material, Scene, Simulator};
+    use std::sync::Arc;
+    use stitch_mesh::cable::Cable;
+    use stitch_mesh::edge_counts::StitchSize;
+    use stitch_mesh::ids::{FaceId, VertexId};
+    use stitch_mesh::lay::lay;
+    use stitch_mesh::pieces::{rectangle, tube};
+    use stitch_mesh::stitch_mesh::StitchMesh;
+    use stitch_mesh::yarn_net::YarnNet;
+
+    /// Unstretched yarn there is, from the sliding coordinates of a simulation.
+    fn yarn_length(simulator: &Simulator) -> f64 {
+        let segments = &simulator.model().segments;
+        segments.iter().map(|s| s.stencil.coordinates::<8>(simulator.state())).map(|q| q[7] - q[3]).sum()
+    }
+
+    fn laid_length(net: &YarnNet) -> f64 {
+        net.segments()
+            .map(|s| net.visits[s.ends[1].index()].u + s.wrap - net.visits[s.ends[0].index()].u)
+            .sum()
+    }
+
+    fn with_cable(mut stitches: StitchMesh, path: [u32; 5]) -> Arc<YarnNet> {
+        stitches.set_cable(Cable::cross(path.map(VertexId).to_vec(), 2, 2, true)).unwrap();
+        Arc::new(lay(&stitches))
+    }
+
+    #[test]
+    fn what_is_to_be_taken_in_is_taken_in_and_no_more() {
+        let size = StitchSize::of_width(3e-3);
+        let flat = with_cable(rectangle(8, 6, size).unwrap(), [29, 30, 31, 32, 33]);
+        // Across the place where the rings of a tube begin, so that the shortened turn matters.
+        let tube = tube(12, 6, size).unwrap();
+        let first = tube.mesh().first_half_edge(FaceId(24));
+        let base = tube.mesh().origin(first).0;
+        let round = with_cable(tube, [base + 10, base + 11, base, base + 1, base + 2]);
+        for net in [flat, round] {
+            let target: f64 = net.taken_in.iter().map(|t| t.length).sum();
+            assert!(target > 1e-3);
+            let mut simulator =
+                Simulator::new(&net, Material::for_loop_width(3e-3), Scene::empty(), net.laid_state())
+                    .unwrap();
+            let mut lengths = vec![yarn_length(&simulator)];
+            assert!((lengths[0] - laid_length(&net)).abs() < 1e-9);
+            while simulator.time_s() < 0.2 {
+                simulator.step().unwrap();
+            }
+            lengths.push(yarn_length(&simulator));
+            // Going on from a saved state goes on with the rest.
+            let state = simulator.state().clone();
+            let mut simulator =
+                Simulator::new(&net, Material::for_loop_width(3e-3), Scene::empty(), state).unwrap();
+            assert!((yarn_length(&simulator) - lengths[1]).abs() < 1e-9);
+            while simulator.time_s() < 0.4 {
+                simulator.step().unwrap();
+            }
+            lengths.push(yarn_length(&simulator));
+            let taken: Vec<f64> = lengths.windows(2).map(|w| (w[0] - w[1]) / target).collect();
+            assert!((taken[0] - 0.5).abs() < 0.05 && (taken[0] + taken[1] - 1.0).abs() < 1e-6, "{taken:?}");
+        }
+    }
+}
