@@ -17,7 +17,6 @@ use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::{Make, Op, Stitch};
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::unravel::loose_loops;
 use tests::fabrics;
 
 /// Numbers from which one edit is made up.
@@ -209,7 +208,6 @@ fn check_yarn(fabric: &Fabric) {
     let net = &fabric.net;
     assert!(net.nodes.iter().all(|n| n.position.is_finite()));
     assert!(fabric.state().fits(net));
-    assert_eq!(loose_loops(&fabric.stitches, net), [], "loops that nothing holds");
 }
 
 fn check(project: &Project) {
