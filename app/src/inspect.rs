@@ -1,5 +1,6 @@
 //! Facts about a project, for people and scripts.
 
+use crate::problems::{Problem, problems};
 use crate::project::{Fabric, Project};
 use crate::relax::{MeshStrain, mesh_strain};
 use glam::DVec3;
@@ -7,15 +8,6 @@ use serde::Serialize;
 use sim_core::Facts;
 use std::collections::BTreeMap;
 use stitch_mesh::ids::{FaceId, VisitId};
-
-/// Something that keeps the project from being knitted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Problem {
-    /// Where, as in `face 12`.
-    pub r#where: String,
-    /// What, in a knitter's words.
-    pub what: String,
-}
 
 /// How many pieces of yarn there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -68,10 +60,6 @@ pub struct Inspection {
 /// Measures a project.
 pub fn inspect(project: &Project) -> Inspection {
     let labelled = &project.labelled;
-    let problems = labelled
-        .problems()
-        .into_iter()
-        .map(|p| Problem { r#where: format!("face {}", p.face()), what: p.what() });
     let mesh = project.fabric.as_ref().map_or(labelled.mesh(), |f| f.stitches.mesh());
     let [low, high] = mesh.bounds();
     let facts = Inspection {
@@ -79,7 +67,7 @@ pub fn inspect(project: &Project) -> Inspection {
         rows: labelled.rows().len(),
         boundary_edges: mesh.edges().filter(|e| mesh.is_border(*e)).count(),
         size_mm: ((high - low) * 1e3).to_array(),
-        problems: problems.collect(),
+        problems: problems(project),
         ..Inspection::default()
     };
     match &project.fabric {
@@ -101,6 +89,7 @@ fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
     facts.dofs = 3 * net.nodes.len() + sliding;
     facts.yarns.closed = net.yarns.iter().filter(|y| y.period.is_some()).count();
     facts.yarns.open = net.yarns.len() - facts.yarns.closed;
+    facts.cable_edges = stitches.cables().iter().map(|c| c.path.len() - 1).sum();
     for stitch in stitches.stitches() {
         *facts.stitches.entry(stitch.to_string()).or_default() += 1;
     }
@@ -139,7 +128,7 @@ impl Inspection {
         /// Places named before the rest is counted.
         const NAMED: usize = 8;
         let mut places: Vec<(&str, Vec<&str>)> = Vec::new();
-        for Problem { r#where, what } in &self.problems {
+        for Problem { r#where, what, .. } in &self.problems {
             match places.iter_mut().find(|(w, _)| w == what) {
                 Some((_, group)) => group.push(r#where),
                 None => places.push((what, vec![r#where])),

@@ -15,7 +15,7 @@ use stitch_mesh::stitch_mesh::StitchMesh;
 /// A repeating chart. Never empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chart {
-    rows: Vec<Vec<Stitch>>,
+    pub(crate) rows: Vec<Vec<Stitch>>,
 }
 
 /// Why a text is not a chart.
@@ -44,6 +44,11 @@ pub enum ChartError {
     },
 }
 
+/// Whether a stitch joins one loop to one.
+fn fits_anywhere(stitch: &Stitch) -> bool {
+    (stitch.bottoms(), stitch.tops()) == (1, 1) && stitch.holds()
+}
+
 impl FromStr for Chart {
     type Err = ChartError;
 
@@ -56,7 +61,7 @@ impl FromStr for Chart {
             for symbol in line.split_whitespace() {
                 let line = number + 1;
                 let stitch: Stitch = symbol.parse().map_err(|error| ChartError::Stitch { line, error })?;
-                if (stitch.bottoms(), stitch.tops()) != (1, 1) || !stitch.holds() {
+                if !fits_anywhere(&stitch) {
                     return Err(ChartError::Shape { line, symbol: symbol.to_owned() });
                 }
                 row.push(stitch);
@@ -70,6 +75,28 @@ impl FromStr for Chart {
 }
 
 impl Chart {
+    /// A chart from its rows, the lowest first.
+    ///
+    /// # Errors
+    /// No rows, an empty row, or a stitch that does not join one loop to one.
+    pub fn new(rows: Vec<Vec<Stitch>>) -> Result<Self, ChartError> {
+        if rows.is_empty() || rows.iter().any(Vec::is_empty) {
+            return Err(ChartError::Empty);
+        }
+        for (line, row) in (1..).zip(&rows) {
+            if let Some(stitch) = row.iter().find(|s| !fits_anywhere(s)) {
+                return Err(ChartError::Shape { line, symbol: stitch.to_string() });
+            }
+        }
+        Ok(Self { rows })
+    }
+
+    /// Its lines, the lowest row first, as [`Self::from_str`] reads them.
+    pub fn lines(&self) -> Vec<String> {
+        let line = |row: &Vec<Stitch>| row.iter().map(Stitch::to_string).collect::<Vec<_>>().join(" ");
+        self.rows.iter().map(line).collect()
+    }
+
     /// The stitch at a row and column of the fabric.
     pub fn at(&self, row: usize, column: usize) -> &Stitch {
         let row = &self.rows[row % self.rows.len()];

@@ -90,23 +90,30 @@ impl EdgeCounts {
         Ok(counts)
     }
 
-    /// Changes the count of an edge; that of a wale edge together with all wale edges of its row.
+    /// Changes the count of some edges; that of a wale edge together with all wale edges of its row.
     ///
     /// # Errors
-    /// [`CountError::Zero`], [`CountError::TooMany`], [`CountError::Length`]; nothing is changed then.
-    pub fn set(&mut self, labelled: &LabelledMesh, edge: EdgeId, count: u32) -> Result<(), CountError> {
-        let mesh = labelled.mesh();
+    /// As [`Self::check`]; nothing is changed then.
+    pub fn set(&mut self, labelled: &LabelledMesh, edges: &[EdgeId], count: u32) -> Result<(), CountError> {
+        self.check(labelled)?;
         let mut after = self.clone();
-        let edges = match labelled.is_wale(edge) {
-            true => labelled.wales_of_row(edge),
-            false => vec![edge],
-        };
-        if after.counts.len() == mesh.edge_count() {
-            edges.iter().for_each(|e| after.counts[e.index()] = count);
+        for edge in edges {
+            match labelled.is_wale(*edge) && after.counts[edge.index()] != count {
+                true => labelled.wales_of_row(*edge).iter().for_each(|e| after.counts[e.index()] = count),
+                false => after.counts[edge.index()] = count,
+            }
         }
         after.check(labelled)?;
         *self = after;
         Ok(())
+    }
+
+    /// Faces whose two wale edges have different counts, with those on the left and on the right. An artist who changes
+    /// labels after counting may leave some; they cannot be cut.
+    pub fn unequal_wales(&self, labelled: &LabelledMesh) -> Vec<(FaceId, u32, u32)> {
+        let count = |h| self.counts[labelled.mesh().edge(h).index()];
+        let at = |f| labelled.wales(f).map(|w| (f, count(w.left), count(w.right)));
+        labelled.mesh().faces().filter_map(at).filter(|(_, left, right)| left != right).collect()
     }
 
     /// Marks a wale edge for increases and decreases, or takes the mark away.

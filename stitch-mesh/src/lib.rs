@@ -6,6 +6,7 @@ pub mod cable;
 mod corners;
 pub mod dye;
 pub mod edge_counts;
+pub mod edge_totals;
 pub mod edit;
 pub mod fill;
 #[cfg(test)]
@@ -18,6 +19,7 @@ pub mod marks;
 pub mod mean_value;
 pub mod mesh;
 pub mod obj;
+pub mod patch;
 pub mod pieces;
 mod region;
 pub mod seam;

@@ -98,6 +98,15 @@ pub enum StitchMeshError {
     },
 }
 
+/// A stitch as it is meant for a face with so many course edges: one symbol stands for yarn-overs that begin from nothing and
+/// for those above a loop of the border, and the face tells which.
+fn fitted(mut stitch: Stitch, edges: usize) -> Stitch {
+    if stitch.bottoms() == 1 && !stitch.holds() && edges == stitch.tops() {
+        stitch.stack.clear();
+    }
+    stitch
+}
+
 impl StitchMesh {
     /// Puts mesh and stitches together.
     ///
@@ -108,6 +117,8 @@ impl StitchMesh {
             return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
         }
         let faces = mesh.face_count();
+        let fitted = mesh.faces().zip(stitches).map(|(f, s)| fitted(s, mesh.face_half_edges(f).len() - 2));
+        let stitches = fitted.collect();
         let stitch_mesh = Self {
             mesh,
             stitches,
@@ -137,7 +148,7 @@ impl StitchMesh {
             return Err(StitchMeshError::Arity { face, edges, stitch: stitch.to_string(), bottoms, tops });
         }
         let below = self.mesh.face_half_edges(face).take(bottoms);
-        if !stitch.holds() && below.into_iter().any(|h| self.mesh.twin(h).is_some()) {
+        if !stitch.holds() && (bottoms > 1 || below.into_iter().any(|h| self.mesh.twin(h).is_some())) {
             return Err(StitchMeshError::HoldsNothing { face, stitch: stitch.to_string() });
         }
         if bottoms == 0 && stitch.holds() {
@@ -175,6 +186,7 @@ impl StitchMesh {
     /// [`StitchMeshError`] where the stitch does not fit; nothing is changed then.
     pub fn set_stitch(&mut self, face: FaceId, stitch: Stitch) -> Result<(), StitchMeshError> {
         let old = self.stitches.get(face.index()).ok_or(StitchMeshError::NoFace(face))?;
+        let stitch = fitted(stitch, old.bottoms() + old.tops());
         if (old.bottoms(), old.tops()) != (stitch.bottoms(), stitch.tops()) {
             let edges = old.bottoms() + old.tops();
             let (bottoms, tops) = (stitch.bottoms(), stitch.tops());

@@ -7,6 +7,7 @@
     reason = "helpers of tests are tests, which clippy cannot see"
 )]
 
+pub mod fabrics;
 pub mod window;
 
 use render::Gpu;

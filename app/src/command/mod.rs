@@ -6,8 +6,10 @@
 
 mod labels;
 mod name;
+mod pins;
 mod script;
 mod stitches;
+mod structure;
 mod tessellation;
 
 pub use script::{read_script, write_script};
@@ -21,10 +23,11 @@ use sim_core::{Material, Scene};
 use std::ops::ControlFlow;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::dye::Dye;
-use stitch_mesh::edit::Survivors;
+use stitch_mesh::edit::{End, Survivors, Way};
 use stitch_mesh::ids::{EdgeId, VertexId};
 use stitch_mesh::label::EdgeLabel;
 use stitch_mesh::mesh::PolygonMesh;
+use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::Stitch;
 
 /// One change to a project.
@@ -155,6 +158,44 @@ pub enum Command {
         /// The colour, `#rrggbb`.
         color: Dye,
     },
+    /// Puts a copied patch on the fabric.
+    Paste {
+        /// The face for its lowest stitch on the left.
+        at: u32,
+        /// The patch.
+        patch: Patch,
+    },
+    /// Splits a course edge: one more loop for the stitch below and the stitch above.
+    SplitCourse {
+        /// The edge.
+        edge: [u32; 2],
+    },
+    /// Collapses a course edge: one loop less for the stitch below and the stitch above.
+    CollapseCourse {
+        /// The edge.
+        edge: [u32; 2],
+    },
+    /// Divides a stitch by a new wale edge.
+    AddWale {
+        /// The stitch.
+        face: u32,
+        /// The vertex below it and the one above it that the new edge joins.
+        edge: [u32; 2],
+    },
+    /// Removes a wale edge, so that the stitches on both sides are worked together.
+    RemoveWale {
+        /// The edge.
+        edge: [u32; 2],
+    },
+    /// Moves an end of a wale edge along its row by one course edge, which changes hands.
+    ShiftWale {
+        /// The edge.
+        edge: [u32; 2],
+        /// Which end.
+        end: End,
+        /// Where to.
+        to: Way,
+    },
     /// Changes the yarn.
     SetMaterial {
         /// All its parameters.
@@ -205,6 +246,7 @@ impl Command {
     /// The project after this command, and which faces and vertices came through it when it has changed the faces of the stitch mesh.
     pub(crate) fn perform(&self, project: &Project) -> Result<(Project, Option<Survivors>)> {
         let mut after = project.clone();
+        let mut survivors = None;
         let project = &mut after;
         match self {
             Self::FillFromBorder { edge } => labels::fill_from_border(project, *edge)?,
@@ -230,6 +272,14 @@ impl Command {
             Self::Unsew { edges } => stitches::unsew(project, edges)?,
             Self::Dye { faces, color } => stitches::dye(project, faces, *color)?,
             Self::DyeRows { rows, color } => stitches::dye_rows(project, *rows, *color)?,
+            Self::Paste { at, patch } => stitches::paste(project, *at, patch)?,
+            Self::SplitCourse { edge } => survivors = structure::split_course(project, *edge)?,
+            Self::CollapseCourse { edge } => survivors = structure::collapse_course(project, *edge)?,
+            Self::AddWale { face, edge } => survivors = structure::add_wale(project, *face, *edge)?,
+            Self::RemoveWale { edge } => survivors = structure::remove_wale(project, *edge)?,
+            Self::ShiftWale { edge, end, to } => {
+                survivors = structure::shift_wale(project, *edge, *end, *to)?;
+            }
             Self::SetMaterial { material } => {
                 material.validate()?;
                 project.material = material.clone();
@@ -249,7 +299,7 @@ impl Command {
                 *project = relax_mesh(project, params, *surface, &mut |_, _| ControlFlow::Continue(()))?;
             }
         }
-        Ok((after, None))
+        Ok((after, survivors))
     }
 }
 

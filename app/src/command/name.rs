@@ -1,6 +1,7 @@
 //! Names of commands, as the history shows them.
 
 use super::Command;
+use stitch_mesh::edit::Way;
 use stitch_mesh::label::EdgeLabel;
 
 /// A number and its noun: `1 edge`, `2 edges`.
@@ -56,6 +57,16 @@ impl Command {
             Self::DyeRows { rows: [first, last], color } => {
                 format!("Dye {} {color}", many(last.abs_diff(*first) + 1, "row"))
             }
+            Self::Paste { patch, .. } => {
+                let count = patch.rows.iter().map(|r| r.stitches.iter().flatten().count()).sum();
+                format!("Paste {}", many(count, "stitch"))
+            }
+            Self::SplitCourse { .. } => "Split course edge".into(),
+            Self::CollapseCourse { .. } => "Collapse course edge".into(),
+            Self::AddWale { .. } => "Add wale edge".into(),
+            Self::RemoveWale { .. } => "Remove wale edge".into(),
+            Self::ShiftWale { to: Way::Left, .. } => "Shift wale edge left".into(),
+            Self::ShiftWale { to: Way::Right, .. } => "Shift wale edge right".into(),
             Self::SetMaterial { .. } => "Change yarn".into(),
             Self::SetScene { .. } => "Change scene".into(),
             Self::ResetYarn => "Lay yarn anew".into(),

@@ -1,7 +1,7 @@
 //! Commands on stitches and on what is marked on their edges: ids stay, the yarn is laid again, and whatever did not change
 //! keeps its place.
 
-use super::check_face;
+use super::{check_face, pins};
 use crate::project::{Fabric, Project};
 use anyhow::{Context, Result};
 use patterns::chart::Chart;
@@ -9,6 +9,7 @@ use stitch_mesh::cable::Cable;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::{FaceId, VertexId};
 use stitch_mesh::label::Row;
+use stitch_mesh::patch::Patch;
 use stitch_mesh::seam::Seam;
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
@@ -21,7 +22,9 @@ pub(super) fn restitch(
     let before = project.clone();
     let mut stitches = (*before.fabric()?.stitches).clone();
     change(&mut stitches)?;
-    project.fabric = Some(Fabric::new(stitches));
+    let fabric = Fabric::new(stitches);
+    project.scene.pins = pins::moved(&before.scene.pins, &before.fabric()?.net, &fabric.net, Some);
+    project.fabric = Some(fabric);
     project.keep_yarn_of(&before, None);
     Ok(())
 }
@@ -86,6 +89,13 @@ pub(super) fn fill_region(project: &mut Project, face: u32, stitch: &Stitch) -> 
         check_face(face, stitches.mesh().face_count())?;
         let region = stitches.region(FaceId(face));
         region.into_iter().try_for_each(|f| Ok(stitches.set_stitch(f, stitch.clone())?))
+    })
+}
+
+pub(super) fn paste(project: &mut Project, at: u32, patch: &Patch) -> Result<()> {
+    restitch(project, |stitches| {
+        check_face(at, stitches.mesh().face_count())?;
+        Ok(patch.paste(stitches, FaceId(at))?)
     })
 }
 

@@ -48,9 +48,7 @@ fn ids(project: &Project, edges: &[[u32; 2]]) -> Result<Vec<EdgeId>> {
 
 pub(super) fn set_counts(project: &mut Project, edges: &[[u32; 2]], count: u32) -> Result<()> {
     let mut counts = counts(project)?;
-    for edge in ids(project, edges)? {
-        counts.set(&project.labelled, edge, count)?;
-    }
+    counts.set(&project.labelled, &ids(project, edges)?, count)?;
     project.counts = Some(counts);
     Ok(())
 }

@@ -1,6 +1,29 @@
-//! Edits of the faces of a stitch mesh (Yuksel et al. §5.3, Fig. 13).
+//! Edits of the faces of a stitch mesh (Yuksel et al. §5.3, Fig. 13): split and collapse course edges, add, remove and shift
+//! wale edges.
+//!
+//! Each makes a new mesh, or refuses with the reason. A new vertex or face gets the number after the last, so that all others
+//! keep theirs. Where one goes, those before it keep their numbers and those after it move down by one; what was merged
+//! into a neighbour goes on as that ([`Survivors`]).
+//!
+//! Faces that gain or lose a loop keep what can be kept of their stitch. A new top is worked the other way than the one on
+//! its left (after a knit a purl, and the other way round), as only that makes two loops out of one; a new bottom lies beside the
+//! one it was split from in the stack. Colours and places in the input stay, and so do all marks: an edge of a cable or a seam
+//! is not cut, the artist has to clear that first.
+
+mod course;
+mod draft;
+mod reshape;
+#[cfg(test)]
+mod tests;
+mod wale;
 
 use crate::ids::{FaceId, VertexId};
+use crate::marks::MarkError;
+use crate::mesh::MeshError;
+use crate::stitch_mesh::{StitchMesh, StitchMeshError};
+
+/// Loops that can be worked together: symbols name them by one digit each.
+pub const MOST_BOTTOMS: usize = 9;
 
 /// What came through an edit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,4 +47,138 @@ impl Survivors {
         }
         before
     }
+}
+
+/// An end of a wale edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// The lower one.
+    Bottom,
+    /// The upper one.
+    Top,
+}
+
+/// A direction along a row, seen from the front with the wale upwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Way {
+    /// Against the row.
+    Left,
+    /// Along the row.
+    Right,
+}
+
+/// The new mesh, and what came through.
+pub type Edited = (StitchMesh, Survivors);
+
+/// Why an edit is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditError {
+    /// No such edge.
+    #[error("there is no edge {0}–{1} in the stitches")]
+    NoEdge(VertexId, VertexId),
+    /// No such face.
+    #[error("there is no face {0}")]
+    NoFace(FaceId),
+    /// A wale edge where a course edge is needed.
+    #[error(
+        "edge {0}–{1} lies between two stitches of a row, and no loop passes it to be split or collapsed; it can be \
+         removed or shifted"
+    )]
+    NotCourse(VertexId, VertexId),
+    /// A course edge where a wale edge is needed.
+    #[error(
+        "edge {0}–{1} lies between two rows, and a loop passes it; only edges between two stitches of a row can be \
+         removed or shifted; this one can be split or collapsed"
+    )]
+    NotWale(VertexId, VertexId),
+    /// The edge lies in a cable.
+    #[error("the loop on edge {0}–{1} crosses in a cable: clear the cable first")]
+    InCable(VertexId, VertexId),
+    /// The edge lies in a seam.
+    #[error("edge {0}–{1} is sewn: undo the seam first")]
+    InSeam(VertexId, VertexId),
+    /// A stitch would be left without a loop above.
+    #[error(
+        "edge {a}–{b} has the only loop that stitch {face} makes; to end its column, remove a wale edge beside it, so that \
+         it is worked together with its neighbour"
+    )]
+    LastTop {
+        /// One end of the edge.
+        a: VertexId,
+        /// The other.
+        b: VertexId,
+        /// The stitch.
+        face: FaceId,
+    },
+    /// A stitch would be left without a loop below.
+    #[error(
+        "edge {a}–{b} has the only loop that stitch {face} is worked into; to end its column, remove a wale edge beside it, \
+         so that it is worked together with its neighbour"
+    )]
+    LastBottom {
+        /// One end of the edge.
+        a: VertexId,
+        /// The other.
+        b: VertexId,
+        /// The stitch.
+        face: FaceId,
+    },
+    /// Two places of the border, or two sides of the mesh, would meet in a point.
+    #[error(
+        "edge {0}–{1} cannot be collapsed: both its ends lie on the border, and the fabric would hang together in a single \
+         point there"
+    )]
+    Pinch(VertexId, VertexId),
+    /// A wale edge on the border.
+    #[error("edge {0}–{1} is the end of its row: there is a stitch on one side only")]
+    RowEnd(VertexId, VertexId),
+    /// The same stitch, or the same two, on both sides all round.
+    #[error("the row of stitch {0} would close on itself with a single stitch")]
+    LastOfRow(FaceId),
+    /// A new wale edge has to join bottom to top.
+    #[error(
+        "{bottom}–{top} does not divide stitch {face}: a new wale edge runs from a corner below the stitch to one above it"
+    )]
+    NotAcross {
+        /// The stitch.
+        face: FaceId,
+        /// The vertex given as lower end.
+        bottom: VertexId,
+        /// The vertex given as upper end.
+        top: VertexId,
+    },
+    /// One side of a new wale edge would have no loops.
+    #[error(
+        "{bottom}–{top} leaves no loop on one of its sides: split an edge above or below stitch {face} first"
+    )]
+    NoLoops {
+        /// The stitch.
+        face: FaceId,
+        /// Lower end.
+        bottom: VertexId,
+        /// Upper end.
+        top: VertexId,
+    },
+    /// A wale edge cannot be shifted over the only edge of a stitch.
+    #[error("stitch {face} has only one loop {side} it, and would be left without: split that edge first")]
+    NothingToGive {
+        /// The stitch.
+        face: FaceId,
+        /// `above` or `below`.
+        side: &'static str,
+    },
+    /// More loops than can be worked together.
+    #[error("stitch {0} would work more than {MOST_BOTTOMS} loops together")]
+    TooManyBottoms(FaceId),
+    /// The faces would not make a mesh.
+    #[error("the fabric would not hold together: {0}")]
+    Mesh(#[from] MeshError),
+    /// The stitches would not fit.
+    #[error(transparent)]
+    Stitch(#[from] StitchMeshError),
+    /// Marks would not fit.
+    #[error(transparent)]
+    Mark(#[from] MarkError),
 }

@@ -1,0 +1,50 @@
+//! Commands that change the faces of the stitch mesh. What came through keeps its yarn where it is.
+
+use super::pins;
+use crate::project::{Fabric, Project};
+use anyhow::Result;
+use stitch_mesh::edit::{EditError, Edited, End, Survivors, Way};
+use stitch_mesh::ids::{FaceId, VertexId};
+use stitch_mesh::stitch_mesh::StitchMesh;
+
+/// Edits the faces and lays the yarn again.
+fn reshape(
+    project: &mut Project,
+    edit: impl FnOnce(&StitchMesh) -> Result<Edited, EditError>,
+) -> Result<Option<Survivors>> {
+    let before = project.clone();
+    let from = before.fabric()?;
+    let (stitches, survivors) = edit(&from.stitches)?;
+    let fabric = Fabric::new(stitches);
+    let was = survivors.faces_before();
+    let old_face = |f: FaceId| was.get(f.index()).copied().flatten();
+    project.scene.pins = pins::moved(&before.scene.pins, &from.net, &fabric.net, old_face);
+    project.fabric = Some(fabric);
+    project.keep_yarn_of(&before, Some(&was));
+    Ok(Some(survivors))
+}
+
+pub(super) fn split_course(project: &mut Project, edge: [u32; 2]) -> Result<Option<Survivors>> {
+    reshape(project, |s| s.split_course(edge.map(VertexId)))
+}
+
+pub(super) fn collapse_course(project: &mut Project, edge: [u32; 2]) -> Result<Option<Survivors>> {
+    reshape(project, |s| s.collapse_course(edge.map(VertexId)))
+}
+
+pub(super) fn add_wale(project: &mut Project, face: u32, edge: [u32; 2]) -> Result<Option<Survivors>> {
+    reshape(project, |s| s.add_wale(FaceId(face), edge.map(VertexId)))
+}
+
+pub(super) fn remove_wale(project: &mut Project, edge: [u32; 2]) -> Result<Option<Survivors>> {
+    reshape(project, |s| s.remove_wale(edge.map(VertexId)))
+}
+
+pub(super) fn shift_wale(
+    project: &mut Project,
+    edge: [u32; 2],
+    end: End,
+    to: Way,
+) -> Result<Option<Survivors>> {
+    reshape(project, |s| s.shift_wale(edge.map(VertexId), end, to))
+}

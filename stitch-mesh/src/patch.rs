@@ -1,0 +1,460 @@
+//! Patches: a selection of stitches copied, mirrored and put elsewhere (Yuksel et al. §5.3).
+//!
+//! A patch has an **anchor column**, that of its lowest stitch on the left: from row to row it goes on above the stitch in it.
+//! The stitches of a row are counted from the anchor column, to the right. So a patch fits wherever rows and columns run as
+//! where it was copied, whatever the fabric is like around it. It changes no faces: a stitch goes where one stands that
+//! joins as many loops to as many.
+
+use crate::cable::{Cable, CableError};
+use crate::dye::Dye;
+use crate::ids::{FaceId, HalfEdgeId, VertexId};
+use crate::label::Row;
+use crate::stitch::Stitch;
+use crate::stitch_mesh::{StitchMesh, StitchMeshError};
+use serde::{Deserialize, Serialize};
+use std::collections::{HashMap, HashSet};
+
+/// A stitch and the colour of its yarn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatchStitch {
+    /// What is knitted.
+    pub stitch: Stitch,
+    /// In which colour.
+    #[serde(default)]
+    pub color: Dye,
+}
+
+/// One row of a patch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatchRow {
+    /// Column of the first stitch, counted from the anchor column.
+    pub begins: i32,
+    /// Stitches left to right; none where the selection had a hole.
+    pub stitches: Vec<Option<PatchStitch>>,
+}
+
+/// A cable between two rows of a patch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatchCable {
+    /// The row below it.
+    pub row: usize,
+    /// Column of the stitch below its first loop.
+    pub column: i32,
+    /// Turn of its first loop among the tops of that stitch.
+    pub top: usize,
+    /// As in [`Cable`].
+    pub strands: Vec<u8>,
+    /// As in [`Cable`].
+    pub order: Vec<u8>,
+    /// As in [`Cable`].
+    pub front: Vec<u8>,
+}
+
+/// A patch. See the module.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Patch {
+    /// Rows, the lowest first.
+    pub rows: Vec<PatchRow>,
+    /// Cables between them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cables: Vec<PatchCable>,
+}
+
+/// Why a patch cannot be copied or pasted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PatchError {
+    /// Nothing is selected, or the patch has no stitches.
+    #[error("there are no stitches to copy")]
+    Empty,
+    /// No such face.
+    #[error("there is no face {0}")]
+    NoFace(FaceId),
+    /// A stitch that does not lie in the rows above the lowest one.
+    #[error(
+        "face {face} does not lie in the rows above face {anchor}, the lowest on the left: a patch is copied from rows that \
+         lie on each other"
+    )]
+    Apart {
+        /// The face.
+        face: FaceId,
+        /// The anchor.
+        anchor: FaceId,
+    },
+    /// The fabric ends before the patch does.
+    #[error("the fabric ends {way} of face {face}, and the patch goes on")]
+    Ends {
+        /// The last face.
+        face: FaceId,
+        /// `above`, `to the left` or `to the right`.
+        way: &'static str,
+    },
+    /// A closed row with fewer stitches than a row of the patch.
+    #[error("the row of face {face} has {has} stitches, and a row of the patch {needs}")]
+    Laps {
+        /// A face of the row.
+        face: FaceId,
+        /// Its stitches.
+        has: usize,
+        /// Those of the patch.
+        needs: usize,
+    },
+    /// A stitch that does not fit.
+    #[error(transparent)]
+    Stitch(#[from] StitchMeshError),
+    /// A cable that does not fit.
+    #[error("a cable of the patch does not fit: {0}")]
+    Cable(#[from] CableError),
+    /// A cable that is not on the patch.
+    #[error("cable {0} of the patch does not lie on its stitches")]
+    NoCable(usize),
+}
+
+impl Patch {
+    /// Copies stitches, their colours, and the cables that lie between them.
+    ///
+    /// # Errors
+    /// [`PatchError`] where they do not lie in rows on each other.
+    pub fn copy(stitches: &StitchMesh, selected: &[FaceId]) -> Result<Self, PatchError> {
+        let count = stitches.mesh().face_count();
+        if let Some(face) = selected.iter().find(|f| f.index() >= count) {
+            return Err(PatchError::NoFace(*face));
+        }
+        let selected: HashSet<FaceId> = selected.iter().copied().collect();
+        let rows = stitches.rows();
+        let anchor = rows.iter().find_map(|r| leftmost(r, &selected)).ok_or(PatchError::Empty)?;
+        let mut places: HashMap<FaceId, (usize, i32)> = HashMap::new();
+        let mut patch = Self { rows: Vec::new(), cables: Vec::new() };
+        let mut at = Some(anchor);
+        while let Some(face) = at.filter(|_| places.len() < selected.len()) {
+            let line = Line::through(stitches, face);
+            let mut row: Vec<(i32, FaceId)> =
+                line.columns().filter(|(_, f)| selected.contains(f) && !places.contains_key(f)).collect();
+            row.sort_unstable();
+            places.extend(row.iter().map(|(c, f)| (*f, (patch.rows.len(), *c))));
+            let begins = row.first().map_or(0, |(c, _)| *c);
+            let mut cells = vec![None; row.last().map_or(0, |(c, _)| (c - begins + 1) as usize)];
+            for (c, f) in row {
+                let (stitch, color) = (stitches.stitch(f).clone(), stitches.dyes()[f.index()]);
+                cells[(c - begins) as usize] = Some(PatchStitch { stitch, color });
+            }
+            patch.rows.push(PatchRow { begins, stitches: cells });
+            at = stitches.above(face).next().filter(|f| *f != anchor && patch.rows.len() < rows.len());
+        }
+        if let Some(face) = selected.iter().filter(|f| !places.contains_key(f)).min() {
+            return Err(PatchError::Apart { face: *face, anchor });
+        }
+        patch.cables =
+            stitches.cables().iter().filter_map(|cable| copied(stitches, cable, &places)).collect();
+        Ok(patch)
+    }
+
+    /// The patch as seen in a mirror: columns and stacks the other way round, twists the other way, left crosses to the
+    /// right.
+    pub fn mirrored(&self) -> Self {
+        let ends = |r: &PatchRow| r.begins.wrapping_add(r.stitches.len() as i32 - 1);
+        // What was the last column of the lowest row is the first one now.
+        let last = self.rows.first().map_or(0, ends);
+        let row = |r: &PatchRow| {
+            let stitches = r.stitches.iter().rev().map(|s| {
+                let mirror = |s: &PatchStitch| PatchStitch { stitch: mirrored(&s.stitch), color: s.color };
+                s.as_ref().map(mirror)
+            });
+            PatchRow { begins: last.wrapping_sub(ends(r)), stitches: stitches.collect() }
+        };
+        let cable = |cable: &PatchCable| {
+            let n = cable.strands.len() as u8;
+            let other = |s: &u8| (n - 1).saturating_sub(*s);
+            let (column, top) = self.loops_of(cable)?.last().copied()?;
+            let tops = self.stitch_at(cable.row, column)?.stitch.tops();
+            Some(PatchCable {
+                row: cable.row,
+                column: last.wrapping_sub(column),
+                top: tops - 1 - top,
+                strands: cable.strands.iter().rev().copied().collect(),
+                order: cable.order.iter().rev().map(other).collect(),
+                front: cable.front.iter().map(other).collect(),
+            })
+        };
+        Self {
+            rows: self.rows.iter().map(row).collect(),
+            cables: self.cables.iter().filter_map(cable).collect(),
+        }
+    }
+
+    /// Puts the patch on a fabric, its lowest stitch on the left on `at`. Cables between the stitches it covers are
+    /// cleared, its own are set. All ids survive.
+    ///
+    /// # Errors
+    /// [`PatchError`] with the face that does not fit; nothing is changed then.
+    pub fn paste(&self, stitches: &mut StitchMesh, at: FaceId) -> Result<(), PatchError> {
+        if at.index() >= stitches.mesh().face_count() {
+            return Err(PatchError::NoFace(at));
+        }
+        if self.rows.iter().all(|r| r.stitches.is_empty()) {
+            return Err(PatchError::Empty);
+        }
+        let mut after = stitches.clone();
+        let mut faces: HashMap<(usize, i32), FaceId> = HashMap::new();
+        let mut anchor = at;
+        for (r, row) in self.rows.iter().enumerate() {
+            if r > 0 {
+                let ends = PatchError::Ends { face: anchor, way: "above" };
+                anchor = stitches.above(anchor).next().ok_or(ends)?;
+            }
+            let line = Line::through(stitches, anchor);
+            if line.row.closed && line.row.faces.len() < row.stitches.len() {
+                let (has, needs) = (line.row.faces.len(), row.stitches.len());
+                return Err(PatchError::Laps { face: anchor, has, needs });
+            }
+            for (i, stitch) in (0..).zip(&row.stitches) {
+                let Some(PatchStitch { stitch, color }) = stitch else { continue };
+                let column = row.begins.wrapping_add(i);
+                let face = line.at(column)?;
+                after.set_stitch(face, stitch.clone())?;
+                after.set_dye(face, *color)?;
+                faces.insert((r, column), face);
+            }
+        }
+        let covered: HashSet<FaceId> = faces.values().copied().collect();
+        let inside =
+            |c: &Cable| edges(stitches, c).all(|h| between(stitches, h).is_some_and(|f| covers(&covered, f)));
+        after.marks_mut().cables.retain(|c| !inside(c));
+        for (i, cable) in self.cables.iter().enumerate() {
+            let path = self.path(stitches, cable, &faces).ok_or(PatchError::NoCable(i))?;
+            let PatchCable { strands, order, front, .. } = cable.clone();
+            after.set_cable(Cable { path, strands, order, front })?;
+        }
+        *stitches = after;
+        Ok(())
+    }
+
+    fn stitch_at(&self, row: usize, column: i32) -> Option<&PatchStitch> {
+        let row = self.rows.get(row)?;
+        let i = usize::try_from(column.checked_sub(row.begins)?).ok()?;
+        row.stitches.get(i)?.as_ref()
+    }
+
+    /// Column of the stitch and turn among its tops, for each loop of a cable.
+    fn loops_of(&self, cable: &PatchCable) -> Option<Vec<(i32, usize)>> {
+        let mut loops = Vec::new();
+        let (mut column, mut top) = (cable.column, cable.top);
+        for _ in 0..cable.strands.iter().map(|n| usize::from(*n)).sum() {
+            while top >= self.stitch_at(cable.row, column)?.stitch.tops() {
+                (column, top) = (column + 1, 0);
+            }
+            loops.push((column, top));
+            top += 1;
+        }
+        Some(loops)
+    }
+
+    /// Vertices along a cable, where the patch lies on `faces`.
+    fn path(
+        &self,
+        stitches: &StitchMesh,
+        cable: &PatchCable,
+        faces: &HashMap<(usize, i32), FaceId>,
+    ) -> Option<Vec<VertexId>> {
+        let mesh = stitches.mesh();
+        let mut path = Vec::new();
+        for (column, top) in self.loops_of(cable)? {
+            let h = stitches.tops(*faces.get(&(cable.row, column))?).nth(top)?;
+            if path.last().is_some_and(|v| *v != mesh.tip(h)) {
+                return None;
+            }
+            if path.is_empty() {
+                path.push(mesh.tip(h));
+            }
+            path.push(mesh.origin(h));
+        }
+        Some(path)
+    }
+}
+
+fn mirrored(stitch: &Stitch) -> Stitch {
+    let last = stitch.bottoms().saturating_sub(1) as u8;
+    let mut mirrored = stitch.clone();
+    mirrored.ops.reverse();
+    mirrored.ops.iter_mut().for_each(|op| op.twist = -op.twist);
+    mirrored.stack.iter_mut().for_each(|b| *b = last - *b);
+    mirrored
+}
+
+/// The selected face of a row that has none to its left.
+fn leftmost(row: &Row, selected: &HashSet<FaceId>) -> Option<FaceId> {
+    let n = row.faces.len();
+    let is_in = |i: usize| selected.contains(&row.faces[i % n]);
+    let first = (0..n).find(|i| is_in(*i))?;
+    let begins = |i: &usize| is_in(*i) && !is_in(i + n - 1);
+    let i = if row.closed { (0..n).find(begins).unwrap_or(first) } else { first };
+    Some(row.faces[i])
+}
+
+/// A row with one of its stitches as the origin of its columns.
+struct Line {
+    row: Row,
+    origin: i32,
+}
+
+impl Line {
+    fn through(stitches: &StitchMesh, face: FaceId) -> Self {
+        let row = stitches.row_of(face);
+        let origin = row.faces.iter().position(|f| *f == face).unwrap_or(0) as i32;
+        Self { row, origin }
+    }
+
+    /// All faces with their columns; in a closed row those on the nearer side.
+    fn columns(&self) -> impl Iterator<Item = (i32, FaceId)> + '_ {
+        let n = self.row.faces.len() as i32;
+        self.row.faces.iter().zip(0..).map(move |(f, i)| {
+            let column = i - self.origin;
+            if !self.row.closed {
+                (column, *f)
+            } else {
+                let around = column.rem_euclid(n);
+                (if 2 * around > n { around - n } else { around }, *f)
+            }
+        })
+    }
+
+    fn at(&self, column: i32) -> Result<FaceId, PatchError> {
+        let faces = &self.row.faces;
+        let i = i64::from(self.origin) + i64::from(column);
+        if self.row.closed {
+            return Ok(faces[i.rem_euclid(faces.len() as i64) as usize]);
+        }
+        let inside = usize::try_from(i).ok().and_then(|i| faces.get(i)).copied();
+        let (end, way) =
+            if column < 0 { (faces[0], "to the left") } else { (faces[faces.len() - 1], "to the right") };
+        inside.ok_or(PatchError::Ends { face: end, way })
+    }
+}
+
+/// Half-edges of the stitches below a cable, left to right.
+fn edges<'a>(stitches: &'a StitchMesh, cable: &'a Cable) -> impl Iterator<Item = HalfEdgeId> + 'a {
+    cable.path.windows(2).filter_map(|w| stitches.mesh().half_edge_between(w[1], w[0]))
+}
+
+/// The stitches below and above a top half-edge.
+fn between(stitches: &StitchMesh, h: HalfEdgeId) -> Option<[FaceId; 2]> {
+    let mesh = stitches.mesh();
+    Some([mesh.face(h), mesh.face_across(h)?])
+}
+
+fn covers(faces: &HashSet<FaceId>, both: [FaceId; 2]) -> bool {
+    both.iter().all(|f| faces.contains(f))
+}
+
+/// A cable as the patch keeps it, if it lies between copied stitches.
+fn copied(
+    stitches: &StitchMesh,
+    cable: &Cable,
+    places: &HashMap<FaceId, (usize, i32)>,
+) -> Option<PatchCable> {
+    let mesh = stitches.mesh();
+    for h in edges(stitches, cable) {
+        let [below, above] = between(stitches, h)?;
+        if places.get(&above)?.0 != places.get(&below)?.0 + 1 {
+            return None;
+        }
+    }
+    let first = edges(stitches, cable).next()?;
+    let face = mesh.face(first);
+    let (row, column) = *places.get(&face)?;
+    let top = stitches.tops(face).position(|h| h == first)?;
+    let Cable { strands, order, front, .. } = cable.clone();
+    Some(PatchCable { row, column, top, strands, order, front })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edge_counts::StitchSize;
+    use crate::pieces::{rectangle, tube};
+
+    fn symbols(stitches: &StitchMesh) -> Vec<String> {
+        let symbol = |f: &FaceId| stitches.stitch(*f).to_string();
+        stitches.rows().iter().map(|r| r.faces.iter().map(symbol).collect::<String>()).collect()
+    }
+
+    /// Stitches 0–5 below 6–11 below 12–17 below 18–23, with a twisted purl and a left cross.
+    fn piece() -> StitchMesh {
+        let mut piece = rectangle(6, 4, StitchSize::of_width(3e-3)).unwrap();
+        piece.set_stitch(FaceId(0), "p1".parse().unwrap()).unwrap();
+        piece.set_stitch(FaceId(6), Stitch::purl()).unwrap();
+        piece.set_dye(FaceId(7), "#ff0000".parse().unwrap()).unwrap();
+        piece.set_cable(Cable::cross([7, 8, 9, 10].map(VertexId).to_vec(), 1, 2, true)).unwrap();
+        piece
+    }
+
+    #[test]
+    fn a_patch_is_copied_and_pasted() {
+        let source = piece();
+        let patch = Patch::copy(&source, &[0, 1, 6, 7].map(FaceId)).unwrap();
+        assert_eq!(patch.cables.len(), 0, "one loop of the cable lies outside");
+        let patch = Patch::copy(&source, &[0, 1, 2, 3, 6, 7, 8, 9].map(FaceId)).unwrap();
+        assert_eq!(patch.cables.len(), 1);
+        let mut target = rectangle(6, 4, StitchSize::of_width(3e-3)).unwrap();
+        patch.paste(&mut target, FaceId(14)).unwrap();
+        assert_eq!(symbols(&target), ["kkkkkk", "kkkkkk", "kkp1kkk", "kkpkkk"]);
+        assert_eq!(target.dyes()[21].to_string(), "#ff0000");
+        assert_eq!(target.cables(), [Cable::cross([23, 24, 25, 26].map(VertexId).to_vec(), 1, 2, true)]);
+        patch.paste(&mut target, FaceId(14)).unwrap();
+        assert_eq!(target.cables().len(), 1, "pasting over it replaces the cable");
+    }
+
+    #[test]
+    fn a_mirrored_patch_crosses_the_other_way() {
+        let source = piece();
+        let patch = Patch::copy(&source, &[0, 1, 2, 3, 6, 7, 8, 9].map(FaceId)).unwrap();
+        assert_eq!(patch.mirrored().mirrored(), patch);
+        let mut target = rectangle(6, 4, StitchSize::of_width(3e-3)).unwrap();
+        patch.mirrored().paste(&mut target, FaceId(1)).unwrap();
+        assert_eq!(symbols(&target), ["kkkkp-1k", "kkkkpk", "kkkkkk", "kkkkkk"]);
+        let cable = &target.cables()[0];
+        assert_eq!(cable.path, [9, 10, 11, 12].map(VertexId));
+        assert_eq!((&cable.strands[..], &cable.front[..]), (&[2, 1][..], &[0, 1][..]));
+        let decrease: Stitch = "d213kyp1".parse().unwrap();
+        assert_eq!(mirrored(&decrease).to_string(), "d231p-1yk");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_named() {
+        let source = piece();
+        let patch = Patch::copy(&source, &[0, 1, 6, 7].map(FaceId)).unwrap();
+        let mut target = rectangle(6, 4, StitchSize::of_width(3e-3))
+            .unwrap()
+            .split_course([8, 9].map(VertexId))
+            .unwrap()
+            .0;
+        let before = target.clone();
+        assert!(matches!(
+            patch.paste(&mut target, FaceId(5)),
+            Err(PatchError::Ends { face: FaceId(5), way: "to the right" })
+        ));
+        assert!(matches!(patch.paste(&mut target, FaceId(19)), Err(PatchError::Ends { way: "above", .. })));
+        assert!(matches!(patch.paste(&mut target, FaceId(99)), Err(PatchError::NoFace(_))));
+        let error = patch.paste(&mut target, FaceId(1)).unwrap_err().to_string();
+        assert!(error.contains("face 1 "), "{error}");
+        assert_eq!(target, before);
+        assert!(matches!(Patch::copy(&source, &[]), Err(PatchError::Empty)));
+        assert!(matches!(Patch::copy(&source, &[FaceId(0), FaceId(99)]), Err(PatchError::NoFace(_))));
+        let mut ring = tube(3, 4, StitchSize::of_width(3e-3)).unwrap();
+        let wide = Patch::copy(&source, &[0, 1, 2, 3].map(FaceId)).unwrap();
+        assert!(matches!(wide.paste(&mut ring, FaceId(0)), Err(PatchError::Laps { has: 3, needs: 4, .. })));
+    }
+
+    #[test]
+    fn a_patch_goes_round_a_tube() {
+        let mut ring = tube(5, 3, StitchSize::of_width(3e-3)).unwrap();
+        let patch = Patch::copy(&piece(), &[0, 1, 6, 7].map(FaceId)).unwrap();
+        patch.paste(&mut ring, FaceId(4)).unwrap();
+        assert_eq!(symbols(&ring), ["kkkkp1", "kkkkp", "kkkkk"]);
+        let again = Patch::copy(&ring, &[4, 0, 9, 5].map(FaceId)).unwrap();
+        assert_eq!(again, patch);
+    }
+}

@@ -1,0 +1,305 @@
+//! Random edits on fabrics of every topology: whatever is done, the stitch mesh stays one, what is refused changes nothing,
+//! and undo leads back to the same document.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, which clippy cannot see")]
+
+use app::command::Command;
+use app::document::Document;
+use app::project::{Fabric, Project};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree as _;
+use std::collections::HashSet;
+use std::sync::Arc;
+use stitch_mesh::cable::Cable;
+use stitch_mesh::edit::{End, Way};
+use stitch_mesh::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
+use stitch_mesh::mesh::PolygonMesh;
+use stitch_mesh::patch::Patch;
+use stitch_mesh::stitch::{Make, Op, Stitch};
+use stitch_mesh::stitch_mesh::StitchMesh;
+use tests::fabrics;
+
+/// Numbers from which one edit is made up.
+type Dice = (u8, u32, u32, u32);
+
+fn pick<T: Copy>(from: &[T], dice: u32) -> Option<T> {
+    (!from.is_empty()).then(|| from[dice as usize % from.len()])
+}
+
+fn ends(stitches: &StitchMesh, edge: EdgeId) -> [u32; 2] {
+    stitches.mesh().edge_ends(edge).map(|v| v.0)
+}
+
+/// An edge that `suits`, if there is one.
+fn some_edge(
+    stitches: &StitchMesh,
+    dice: u32,
+    suits: impl Fn(HalfEdgeId, Option<HalfEdgeId>) -> bool,
+) -> Option<[u32; 2]> {
+    let mesh = stitches.mesh();
+    let fitting = |e: &EdgeId| {
+        let (h, twin) = mesh.edge_sides(*e);
+        suits(h, twin)
+    };
+    let edges: Vec<EdgeId> = mesh.edges().filter(fitting).collect();
+    pick(&edges, dice).map(|e| ends(stitches, e))
+}
+
+/// Any stitch with these numbers of loops.
+fn some_stitch(bottoms: usize, tops: usize, mut dice: u32) -> Stitch {
+    let mut throw = |n: u32| {
+        let face = dice % n;
+        dice = dice.wrapping_mul(747_796_405).wrapping_add(2_891_336_453) >> 3;
+        face
+    };
+    let mut stack: Vec<u8> = (0..bottoms as u8).collect();
+    (1..bottoms).for_each(|i| stack.swap(i, throw(i as u32 + 1) as usize));
+    let make = |n| [Make::Knit, Make::Purl, Make::YarnOver][n as usize];
+    let ops = (0..tops).map(|_| Op { make: make(throw(3)), twist: throw(3) as i8 - 1 }).collect();
+    Stitch { ops, stack: stack.into() }
+}
+
+/// Loops side by side above a row, from a stitch to the right.
+fn some_cable(stitches: &StitchMesh, face: FaceId, dice: u32) -> Option<Command> {
+    let mesh = stitches.mesh();
+    let mut path = Vec::new();
+    let mut at = Some(face);
+    let loops = 2 + dice as usize % 5;
+    while let Some(face) = at.filter(|_| path.len() <= loops) {
+        for h in stitches.tops(face).take((loops + 1).saturating_sub(path.len().max(1))) {
+            if path.is_empty() {
+                path.push(mesh.tip(h));
+            }
+            path.push(mesh.origin(h));
+        }
+        at = mesh.face_across(stitches.right(face));
+    }
+    let crossed = path.len().checked_sub(1)? as u8;
+    let left = 1 + (dice / 8) as u8 % crossed.max(2).saturating_sub(1);
+    let cable = Cable::cross(path, left, crossed.saturating_sub(left), dice.is_multiple_of(2));
+    Some(Command::SetCable { cable })
+}
+
+/// A block of stitches copied, perhaps mirrored.
+fn some_patch(stitches: &StitchMesh, face: FaceId, dice: u32) -> Option<Patch> {
+    let mut block = Vec::new();
+    let mut anchor = Some(face);
+    for _ in 0..1 + dice % 3 {
+        let mut at = anchor;
+        for _ in 0..1 + dice / 3 % 4 {
+            block.extend(at);
+            at = at.and_then(|f| stitches.mesh().face_across(stitches.right(f)));
+        }
+        anchor = anchor.and_then(|f| stitches.above(f).next());
+    }
+    let patch = Patch::copy(stitches, &block).ok()?;
+    Some(if dice.is_multiple_of(2) { patch.mirrored() } else { patch })
+}
+
+/// Vertices along the border from an edge on.
+fn some_border(stitches: &StitchMesh, dice: u32, long: u32) -> Option<Vec<u32>> {
+    let mesh = stitches.mesh();
+    let borders: Vec<HalfEdgeId> = mesh.borders().concat();
+    let first = pick(&borders, dice)?;
+    let along = std::iter::successors(Some(first), |h| mesh.next_on_border(*h));
+    let mut path = vec![mesh.origin(first).0];
+    path.extend(along.take(long as usize).map(|h| mesh.tip(h).0));
+    Some(path)
+}
+
+/// An edit made up from numbers; most of them can be done, some not.
+fn command(stitches: &StitchMesh, (kind, a, b, c): Dice) -> Option<Command> {
+    let mesh = stitches.mesh();
+    let face = FaceId(a % mesh.face_count() as u32);
+    let stitch = stitches.stitch(face);
+    let is_course = |h: HalfEdgeId, _: Option<HalfEdgeId>| !stitches.is_wale(h);
+    let is_joint = |h: HalfEdgeId, twin: Option<HalfEdgeId>| stitches.is_wale(h) && twin.is_some();
+    let several = |h: HalfEdgeId| {
+        let stitch = stitches.stitch(mesh.face(h));
+        !stitches.is_wale(h) && (if stitches.is_bottom(h) { stitch.bottoms() } else { stitch.tops() }) > 1
+    };
+    let color = format!("#{:06x}", b % 0x100_0000).parse().unwrap();
+    Some(match kind % 20 {
+        0 | 1 => {
+            let stitch = some_stitch(stitch.bottoms(), stitch.tops(), b);
+            Command::SetStitch { faces: vec![face.0], stitch }
+        }
+        2 | 3 => Command::SplitCourse { edge: some_edge(stitches, a, is_course)? },
+        4 => Command::CollapseCourse { edge: some_edge(stitches, a, is_course)? },
+        5 | 6 => {
+            let edge = some_edge(stitches, a, |h, twin| several(h) && twin.is_none_or(several))?;
+            Command::CollapseCourse { edge }
+        }
+        7 | 8 => {
+            let corners: Vec<u32> = mesh.face_vertices(face).map(|v| v.0).collect();
+            let (below, above) = corners.split_at(stitch.bottoms() + 1);
+            Command::AddWale { face: face.0, edge: [pick(below, b)?, pick(above, c)?] }
+        }
+        9 => Command::RemoveWale { edge: some_edge(stitches, a, is_joint)? },
+        10 | 11 => {
+            let end = if b.is_multiple_of(2) { End::Bottom } else { End::Top };
+            let to = if c.is_multiple_of(2) { Way::Left } else { Way::Right };
+            Command::ShiftWale { edge: some_edge(stitches, a, is_joint)?, end, to }
+        }
+        12 => some_cable(stitches, face, b)?,
+        13 => {
+            let cables: Vec<&Cable> = stitches.cables().iter().collect();
+            let cable = pick(&cables, a)?;
+            Command::ClearCables { edges: vec![[cable.path[0].0, cable.path[1].0]] }
+        }
+        14 => {
+            let edge = some_edge(stitches, a, |h, twin| {
+                twin.is_none() && !stitches.is_wale(h) && !stitches.is_bottom(h)
+            })?;
+            Command::SetLive { edges: vec![edge], live: !b.is_multiple_of(3) }
+        }
+        15 => Command::Dye { faces: vec![face.0], color },
+        16 => Command::Paste { at: b % mesh.face_count() as u32, patch: some_patch(stitches, face, c)? },
+        17 => match b % 3 {
+            0 => Command::SetSpiral { spiral: c.is_multiple_of(2) },
+            1 => {
+                Command::FillRegion { face: face.0, stitch: some_stitch(stitch.bottoms(), stitch.tops(), c) }
+            }
+            _ => Command::SetChart {
+                chart: vec!["k p".into(), "p k".into()],
+                rows: None,
+                faces: Some(vec![face.0]),
+            },
+        },
+        18 => {
+            let long = 1 + c % 3;
+            Command::Sew { a: some_border(stitches, a, long)?, b: some_border(stitches, b, long)? }
+        }
+        _ => Command::Unsew { edges: vec![some_edge(stitches, a, |_, twin| twin.is_none())?] },
+    })
+}
+
+/// What holds for any stitch mesh.
+fn check_mesh(stitches: &StitchMesh) {
+    let mesh = stitches.mesh();
+    let again = PolygonMesh::new(mesh.positions().to_vec(), &mesh.face_lists()).unwrap();
+    let again = StitchMesh::new(again, stitches.stitches().to_vec()).unwrap();
+    let marks = stitches.marks().clone();
+    let again = again.with(stitches.dyes().to_vec(), stitches.places().to_vec(), marks).unwrap();
+    assert!(again == *stitches);
+    for h in (0..mesh.half_edge_count()).map(HalfEdgeId::new) {
+        if let Some(twin) = mesh.twin(h) {
+            assert_eq!(stitches.is_wale(h), stitches.is_wale(twin), "a wale edge of one stitch only");
+        }
+    }
+    for face in mesh.faces() {
+        assert_eq!(mesh.face_half_edges(face).filter(|h| stitches.is_wale(*h)).count(), 2);
+    }
+    let mut seen = HashSet::new();
+    for row in stitches.rows() {
+        assert!(row.faces.iter().all(|f| seen.insert(*f)), "a stitch in two rows");
+        let joined = row.faces.windows(2).all(|w| mesh.face_across(stitches.right(w[0])) == Some(w[1]));
+        assert!(joined);
+    }
+    assert_eq!(seen.len(), mesh.face_count());
+}
+
+/// What holds for the yarn of any stitch mesh.
+fn check_yarn(fabric: &Fabric) {
+    let net = &fabric.net;
+    assert!(net.nodes.iter().all(|n| n.position.is_finite()));
+    assert!(fabric.state().fits(net));
+}
+
+fn check(project: &Project) {
+    let fabric = project.fabric().unwrap();
+    check_mesh(&fabric.stitches);
+    check_yarn(fabric);
+    project.scene.validate(fabric.net.nodes.len()).unwrap();
+}
+
+/// The project as its file has it.
+fn saved(project: &Project) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.purl");
+    project.save(&path).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let again = Project::open(&path).unwrap();
+    assert_eq!(again.fabric().unwrap().stitches, project.fabric().unwrap().stitches);
+    assert_eq!(again.counts, project.counts);
+    bytes
+}
+
+/// Whether two projects are the same, by all that an edit of stitches can change.
+fn same(a: &Project, b: &Project) -> bool {
+    let stitches = |p: &Project| p.fabric().unwrap().stitches.clone();
+    stitches(a) == stitches(b) && a.counts == b.counts && a.scene == b.scene && a.material == b.material
+}
+
+/// Does the edits and takes them back. Returns how many could be done.
+fn edit(which: usize, dice: &[Dice]) -> usize {
+    let mut document = Document::new(fabrics::fabric(which));
+    let start = saved(document.project());
+    let mut states = vec![document.project().clone()];
+    for throw in dice {
+        let before = document.project().fabric().unwrap().stitches.clone();
+        let Some(command) = command(&before, *throw) else { continue };
+        match document.apply(command.clone()) {
+            Ok(()) => {
+                check(document.project());
+                states.push(document.project().clone());
+            }
+            Err(error) => {
+                let after = &document.project().fabric().unwrap().stitches;
+                assert!(Arc::ptr_eq(&before, after), "{command:?} was refused, but has changed something");
+                assert!(!format!("{error:#}").is_empty());
+            }
+        }
+    }
+    let end = saved(document.project());
+    for state in states.iter().rev().skip(1) {
+        assert!(document.undo() && same(document.project(), state), "undo leads elsewhere");
+    }
+    assert!(!document.undo());
+    assert!(saved(document.project()) == start, "undo leads elsewhere");
+    while document.redo() {}
+    assert!(saved(document.project()) == end, "redo leads elsewhere");
+    states.len() - 1
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, max_shrink_iters: 500, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_edits_leave_a_stitch_mesh_and_can_be_undone(
+        which in 0..fabrics::COUNT,
+        dice in proptest::collection::vec(any::<Dice>(), 10..60),
+    ) {
+        edit(which, &dice);
+    }
+}
+
+#[test]
+fn most_edits_can_be_done() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let throws = proptest::collection::vec(any::<Dice>(), 60);
+    for which in 0..fabrics::COUNT {
+        let dice = throws.new_tree(&mut runner).unwrap().current();
+        let done = edit(which, &dice);
+        assert!(done > 20, "only {done} of 60 edits of fabric {which} could be done");
+    }
+}
+
+/// A collapse that moves numbers down takes cables, seams and colours along.
+#[test]
+fn marks_follow_their_vertices() {
+    let mut document = Document::new(fabrics::fabric(0));
+    let cable = Cable::cross([22, 23, 24].map(VertexId).to_vec(), 1, 1, false);
+    for command in [
+        Command::SetCable { cable },
+        Command::Dye { faces: vec![29], color: "#123456".parse().unwrap() },
+        Command::RemoveWale { edge: [8, 15] },
+        Command::RemoveWale { edge: [15, 22] },
+        Command::CollapseCourse { edge: [15, 14] },
+    ] {
+        document.apply(command).unwrap();
+    }
+    let stitches = &document.project().fabric().unwrap().stitches;
+    assert_eq!(stitches.cables()[0].path, [21, 22, 23].map(VertexId));
+    assert_eq!(stitches.dyes()[27].to_string(), "#123456");
+}
