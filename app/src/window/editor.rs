@@ -3,7 +3,6 @@
 //! Each frame it looks whether the document or the simulation has something new, shows it, and turns clicks into requests. It
 //! never waits: the document lives in a [`Session`], the yarn in a [`SimThread`].
 
-use super::forecast::Forecast;
 use super::navigation::Navigation;
 use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
@@ -22,6 +21,7 @@ use sim_core::{Material, Pin, Scene, SimCommand, SimThread, Snapshot};
 use std::path::PathBuf;
 use std::sync::Arc;
 use stitch_mesh::ids::HalfEdgeId;
+use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
@@ -40,7 +40,8 @@ pub struct Editor {
     pub(super) playing: bool,
     pub(super) panel: panels::State,
     pub(super) search: Option<Search>,
-    pub(super) forecast: Forecast,
+    /// The patch that was copied.
+    pub(super) patch: Option<Patch>,
     /// Whether a text field had the keys in the last frame.
     pub(super) typing: bool,
     /// Selected and hidden parts of the labelled mesh and of the fabric.
@@ -93,7 +94,7 @@ impl Editor {
             navigation: Navigation::default(),
             playing: false,
             search: None,
-            forecast: Forecast::default(),
+            patch: None,
             typing: false,
             selections: [Selection::new(Mode::Edge), Selection::new(Mode::Face)],
             faces: Faces::default(),

@@ -2,8 +2,8 @@
 
 mod actions;
 mod catalogue;
+mod clipboard;
 pub mod editor;
-mod forecast;
 mod meant;
 mod navigation;
 mod panels;

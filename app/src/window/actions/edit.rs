@@ -1,11 +1,11 @@
 //! Labels, stitches and yarn.
 
-use super::{Action, FABRIC, On};
+use super::{Action, FABRIC, On, ends};
 use crate::command::Command;
 use crate::drawing::Stage;
 use crate::window::editor::Editor;
 use egui::{Key, Modifiers};
-use stitch_mesh::ids::{EdgeId, FaceId};
+use stitch_mesh::ids::FaceId;
 use stitch_mesh::label::EdgeLabel;
 use stitch_mesh::stitch::Stitch;
 
@@ -76,11 +76,6 @@ pub(super) const ACTIONS: &[Action] = &[
     Action::new("Lay anew", "Put the yarn back to where it was laid", |e| e.act(Command::ResetYarn))
         .at(&[Stage::Yarn]),
 ];
-
-fn ends(editor: &Editor, edges: Vec<EdgeId>) -> Vec<[u32; 2]> {
-    let mesh = editor.surface().mesh();
-    edges.into_iter().map(|e| mesh.edge_ends(e).map(|v| v.0)).collect()
-}
 
 fn label(editor: &mut Editor, label: Option<EdgeLabel>) {
     let edges = ends(editor, editor.edges_meant());

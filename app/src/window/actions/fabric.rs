@@ -1,7 +1,7 @@
 //! What is marked on the edges of a fabric, and what is done to stitches as a whole: cables, seams, live loops, colours,
 //! regions, relaxing.
 
-use super::{Action, FABRIC, On};
+use super::{Action, FABRIC, On, ends};
 use crate::command::Command;
 use crate::window::editor::Editor;
 use crate::window::runs::runs;
@@ -57,6 +57,24 @@ pub(super) const ACTIONS: &[Action] = &[
     .at(FABRIC)
     .on(On::Faces)
     .unless(Editor::no_faces),
+    Action::new("Copy", "Copy stitches with their colours and cables", Editor::copy)
+        .key(Modifiers::COMMAND, Key::C)
+        .at(FABRIC)
+        .on(On::Faces)
+        .unless(Editor::no_faces),
+    Action::new("Mirror copy", "Turn what was copied left to right", Editor::mirror)
+        .key(Modifiers::COMMAND, Key::M)
+        .at(FABRIC)
+        .unless(Editor::nothing_copied),
+    Action::new(
+        "Paste",
+        "Put what was copied where the pointer is: its lowest stitch on the left comes there",
+        Editor::paste,
+    )
+    .key(Modifiers::COMMAND, Key::V)
+    .at(FABRIC)
+    .on(On::Faces)
+    .unless(Editor::nothing_copied),
     Action::new("Dye", "Give the yarn of stitches the colour that is chosen", |e| {
         let faces = e.faces_meant().into_iter().map(|f| f.0).collect();
         e.act(Command::Dye { faces, color: e.panel.dye });
@@ -85,11 +103,6 @@ fn none_marked(
     why: &'static str,
 ) -> Option<&'static str> {
     if stitches(editor).is_none_or(none) { Some(why) } else { editor.no_edges() }
-}
-
-fn ends(editor: &Editor, edges: Vec<EdgeId>) -> Vec<[u32; 2]> {
-    let mesh = editor.surface().mesh();
-    edges.into_iter().map(|e| mesh.edge_ends(e).map(|v| v.0)).collect()
 }
 
 fn lines(editor: &Editor) -> Vec<Vec<VertexId>> {

@@ -7,11 +7,13 @@
 mod edit;
 mod fabric;
 mod select;
+mod structure;
 mod view;
 
 use super::editor::Editor;
 use crate::drawing::Stage;
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
+use stitch_mesh::ids::EdgeId;
 
 /// What an action works on: tells which keys are worth naming when the pointer is over something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,7 +101,13 @@ impl Action {
 
 /// All actions.
 pub fn all() -> impl Iterator<Item = &'static Action> {
-    [view::ACTIONS, select::ACTIONS, edit::ACTIONS, fabric::ACTIONS].into_iter().flatten()
+    [view::ACTIONS, select::ACTIONS, edit::ACTIONS, fabric::ACTIONS, structure::ACTIONS].into_iter().flatten()
+}
+
+/// Edges by their vertices, as commands name them.
+fn ends(editor: &Editor, edges: Vec<EdgeId>) -> Vec<[u32; 2]> {
+    let mesh = editor.surface().mesh();
+    edges.into_iter().map(|e| mesh.edge_ends(e).map(|v| v.0)).collect()
 }
 
 /// The action of a name.

@@ -8,6 +8,17 @@ use crate::window::pointer::Tool;
 use crate::window::selection::Mode;
 use egui::Ui;
 
+/// Which tools are shown for a fabric.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tab {
+    /// Kinds of stitches.
+    Palette,
+    /// What is done to a fabric beside.
+    Finish,
+    /// The simulation.
+    Simulate,
+}
+
 /// Shows the panel.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
     egui::Panel::left("tools").exact_size(216.0).resizable(false).show(ui, |ui| {
@@ -47,31 +58,59 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                     ui.label("The mesh as it was read. Go on to Labels.");
                 }
                 Stage::Labels => labels(editor, ui),
-                Stage::Stitches => {
-                    fabric(editor, ui);
-                    ui.separator();
-                    relaxing(editor, ui);
-                }
-                Stage::Yarn => {
-                    yarn::show(editor, ui);
-                    ui.separator();
-                    fabric(editor, ui);
-                }
+                Stage::Stitches | Stage::Yarn => fabric(editor, ui),
             }
         });
     });
 }
 
-/// Everything that changes the fabric.
+/// Everything that changes the fabric, by tabs so that each fits without scrolling.
 fn fabric(editor: &mut Editor, ui: &mut Ui) {
-    palette::show(editor, ui);
-    button(editor, ui, "Fill region");
+    let in_yarn = editor.stage == Stage::Yarn;
+    let tab = match editor.panel.tab {
+        Tab::Simulate if !in_yarn => Tab::Palette,
+        tab => tab,
+    };
+    ui.horizontal(|ui| {
+        for (shown, name, what) in [
+            (Tab::Palette, "Palette", "Kinds of stitches, and patterns of knit and purl"),
+            (Tab::Finish, "Finish", "Copies, colours, cables, seams, structure and evenness"),
+            (Tab::Simulate, "Simulate", "The simulation, its scene and its yarn"),
+        ] {
+            let fits = shown != Tab::Simulate || in_yarn;
+            if fits && ui.selectable_label(tab == shown, name).on_hover_text(what).clicked() {
+                editor.panel.tab = shown;
+            }
+        }
+    });
     ui.separator();
-    patterns::show(editor, ui);
-    ui.separator();
-    colour::show(editor, ui);
-    ui.separator();
-    marks(editor, ui);
+    match tab {
+        Tab::Palette => {
+            palette::show(editor, ui);
+            button(editor, ui, "Fill region");
+            ui.separator();
+            patterns::show(editor, ui);
+        }
+        Tab::Finish => {
+            copies(editor, ui);
+            ui.separator();
+            colour::show(editor, ui);
+            ui.separator();
+            edges(editor, ui);
+            ui.separator();
+            relaxing(editor, ui);
+        }
+        Tab::Simulate => yarn::show(editor, ui),
+    }
+}
+
+fn copies(editor: &mut Editor, ui: &mut Ui) {
+    ui.heading("Copies");
+    ui.horizontal_wrapped(|ui| {
+        for name in ["Copy", "Mirror copy", "Paste"] {
+            button(editor, ui, name);
+        }
+    });
 }
 
 /// What is selected, in words.
@@ -133,11 +172,20 @@ fn relaxing(editor: &mut Editor, ui: &mut Ui) {
     button(editor, ui, "Relax mesh");
 }
 
-/// What is marked on edges.
-fn marks(editor: &mut Editor, ui: &mut Ui) {
+/// What is marked on edges, and how stitches meet at them.
+fn edges(editor: &mut Editor, ui: &mut Ui) {
     ui.heading("Edges");
     ui.horizontal_wrapped(|ui| {
-        for name in ["Cable", "Sew", "Unsew", "Live loops", "Spiral"] {
+        for name in ["Cable", "Live loops", "Sew", "Unsew", "Spiral"] {
+            button(editor, ui, name);
+        }
+    });
+    ui.heading("Structure");
+    ui.horizontal_wrapped(|ui| {
+        for name in ["Split loop", "Collapse loop", "Divide stitch", "Remove wale"] {
+            button(editor, ui, name);
+        }
+        for name in ["Shift top left", "Shift top right", "Shift bottom left", "Shift bottom right"] {
             button(editor, ui, name);
         }
     });

@@ -39,6 +39,10 @@ pub struct State {
     pub relax: [f64; 2],
     /// Whether relaxed stitches stay on the surface of the input mesh.
     pub relax_on_surface: bool,
+    /// What tessellating would come to.
+    pub forecast: tessellation::Forecast,
+    /// Which tools the left panel shows.
+    pub tab: left::Tab,
     /// Numbers of the alternations.
     pub alternation: patterns::Numbers,
 }
@@ -55,6 +59,8 @@ impl State {
             dye: Dye([0x00, 0x72, 0xb2]),
             relax: [RelaxParams::default().aspect, RelaxParams::default().fill],
             relax_on_surface: true,
+            forecast: tessellation::Forecast::default(),
+            tab: left::Tab::Simulate,
             brush_radius: 30.0,
             palette_filter: String::new(),
             alternation: patterns::Numbers::default(),

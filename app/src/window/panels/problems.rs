@@ -1,11 +1,11 @@
 //! What keeps the mesh from being knitted; a click shows where.
 
 use crate::drawing::Stage;
-use crate::problems::Problem;
+use crate::problems::{Of, Problem};
 use crate::window::editor::Editor;
 use crate::window::selection::{Change, Picked};
 use egui::{RichText, Ui};
-use stitch_mesh::ids::FaceId;
+use stitch_mesh::ids::{FaceId, VertexId};
 
 /// Problems shown; the rest waits until these are mended.
 const MOST: usize = 40;
@@ -34,8 +34,16 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
 }
 
 fn show_where(editor: &mut Editor, problem: &Problem) {
-    let Some(face) = problem.r#where.strip_prefix("face ").and_then(|n| n.parse().ok()) else { return };
-    editor.go_to(Stage::Labels);
-    editor.select(Picked::Faces(vec![FaceId(face)]), Change::Replace);
+    editor.go_to(match problem.of {
+        Of::Input => Stage::Labels,
+        Of::Stitches => Stage::Stitches,
+    });
+    let mesh = editor.surface().mesh();
+    let edge = problem.edge.and_then(|[a, b]| mesh.edge_between(VertexId(a), VertexId(b)));
+    match (problem.face, edge) {
+        (Some(face), _) => editor.select(Picked::Faces(vec![FaceId(face)]), Change::Replace),
+        (None, Some(edge)) => editor.select(Picked::Edges(vec![edge]), Change::Replace),
+        (None, None) => return,
+    }
     editor.frame_selected();
 }

@@ -1,11 +1,12 @@
 //! How many stitches go where, and what that comes to, before it is done.
 
 use crate::command::Command;
+use crate::preview::{Consequences, preview};
+use crate::project::Project;
 use crate::window::actions::button;
 use crate::window::editor::Editor;
-use crate::window::forecast::Tally;
 use egui::{RichText, Ui};
-use stitch_mesh::edge_counts::EdgeCounts;
+use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
 use stitch_mesh::ids::EdgeId;
 
 /// Shows it.
@@ -78,39 +79,45 @@ fn selected_edges(editor: &mut Editor, ui: &mut Ui) {
     }
 }
 
+/// The last answer, and the revision and width it is for: counting again at every frame would be a waste.
+#[derive(Default)]
+pub struct Forecast(Option<(u64, Option<f64>, Result<Consequences, String>)>);
+
 fn consequences(editor: &mut Editor, ui: &mut Ui) {
-    let width = editor.panel.width_changed.then(|| (editor.panel.width_mm * 1e3).round() as u64);
+    let width = editor.panel.width_changed.then_some(editor.panel.width_mm);
     let view = editor.view.clone();
-    let ctx = ui.ctx().clone();
-    let answer = editor.forecast.ask((view.revision, width), &view.project, move || ctx.request_repaint());
+    let slot = &mut editor.panel.forecast.0;
+    if !slot.as_ref().is_some_and(|(revision, w, _)| (*revision, *w) == (view.revision, width)) {
+        *slot = None;
+    }
+    let (.., answer) = slot.get_or_insert_with(|| {
+        (view.revision, width, ask(&view.project, width).map_err(|e| format!("{e:#}")))
+    });
     match answer {
-        None => {
-            ui.horizontal(|ui| {
-                ui.spinner();
-                ui.label("counting …");
-            });
-        }
-        Some(Err(error)) => {
-            ui.colored_label(ui.visuals().error_fg_color, error);
-        }
-        Some(Ok(after)) => {
-            let facts = &view.facts;
-            let has = view.project.fabric.is_some();
-            let before = has.then(|| (facts.loops, facts.rows));
-            ui.label(compare(before, after));
-        }
+        Ok(consequences) => ui.label(said(*consequences)),
+        Err(error) => ui.colored_label(ui.visuals().error_fg_color, error.as_str()),
+    };
+}
+
+/// What tessellating comes to: with a new stitch width [mm], or as edges are counted now.
+fn ask(project: &Project, width_mm: Option<f64>) -> anyhow::Result<Consequences> {
+    let size = width_mm.map_or(project.size, |mm| StitchSize::of_width(mm * 1e-3));
+    match &project.counts {
+        Some(counts) if width_mm.is_none() => preview(project, counts),
+        _ => preview(project, &EdgeCounts::from_size(&project.labelled, size)?),
     }
 }
 
-/// As in "1 204 → 1 260 stitches, 44 → 46 rows, 12 increases, 8 decreases".
-fn compare(before: Option<(usize, usize)>, after: Tally) -> String {
-    let change = |before: Option<usize>, after: usize, what: &str| match before {
-        Some(before) if before != after => format!("{} → {} {what}", grouped(before), grouped(after)),
-        _ => format!("{} {what}", grouped(after)),
+/// As in "1 204 ▶ 1 260 stitches, 44 ▶ 46 rows, 12 increases, 8 decreases".
+fn said(Consequences { before, after }: Consequences) -> String {
+    let change = |before: u64, after: u64, what: &str| match before {
+        0 => format!("{} {what}", grouped(after)),
+        same if same == after => format!("{} {what}", grouped(after)),
+        before => format!("{} ▶ {} {what}", grouped(before), grouped(after)),
     };
     [
-        change(before.map(|b| b.0), after.stitches, "stitches"),
-        change(before.map(|b| b.1), after.rows, "rows"),
+        change(before.stitches, after.stitches, "stitches"),
+        change(before.rows, after.rows, "rows"),
         format!("{} increases", grouped(after.increases)),
         format!("{} decreases", grouped(after.decreases)),
     ]
@@ -118,12 +125,12 @@ fn compare(before: Option<(usize, usize)>, after: Tally) -> String {
 }
 
 /// A number in groups of three digits.
-fn grouped(number: usize) -> String {
+fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push('\u{202f}');
+            text.push('\u{2009}');
         }
         text.push(digit);
     }
@@ -133,12 +140,14 @@ fn grouped(number: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stitch_mesh::edge_totals::Totals;
 
     #[test]
     fn consequences_read_well() {
-        let after = Tally { stitches: 1260, increases: 12, decreases: 8, rows: 46 };
-        let said = compare(Some((1204, 46)), after).replace('\u{202f}', " ");
-        assert_eq!(said, "1 204 → 1 260 stitches, 46 rows, 12 increases, 8 decreases");
-        assert_eq!(grouped(1_234_567).replace('\u{202f}', " "), "1 234 567");
+        let before = Totals { stitches: 1204, rows: 46, ..Totals::default() };
+        let after = Totals { stitches: 1260, increases: 12, decreases: 8, rows: 46 };
+        let said = said(Consequences { before, after }).replace('\u{2009}', " ");
+        assert_eq!(said, "1 204 ▶ 1 260 stitches, 46 rows, 12 increases, 8 decreases");
+        assert_eq!(grouped(1_234_567).replace('\u{2009}', " "), "1 234 567");
     }
 }
