@@ -6,6 +6,7 @@ use stitch_mesh::cable::Cable;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::{FaceId, VisitId};
 use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::unravel::loose_loops;
 
 /// How much denser than asked for the loops of an increase or decrease may be.
 ///
@@ -69,6 +70,7 @@ pub fn problems(project: &Project) -> Vec<Problem> {
         found.extend(squeezed(&fabric.stitches, project.size));
         found.extend(fabric.stitches.cables().iter().filter_map(|c| scattered(&fabric.stitches, c)));
         found.extend(closed(fabric));
+        found.extend(loose(fabric));
     }
     found
 }
@@ -125,6 +127,16 @@ fn scattered(stitches: &StitchMesh, cable: &Cable) -> Option<Problem> {
         before = Some(now);
     }
     None
+}
+
+/// Loops that nothing holds.
+fn loose(fabric: &Fabric) -> impl Iterator<Item = Problem> {
+    let loops = loose_loops(&fabric.stitches, &fabric.net);
+    loops.into_iter().map(|top| {
+        let what = "nothing holds its loop, it would run: it is slipped row after row to where rows meet top to top; knit it \
+                    once on the way";
+        Problem::at_face(Of::Stitches, fabric.stitches.mesh().face(top), what)
+    })
 }
 
 /// Rings of yarn where a spiral was asked for.

@@ -55,6 +55,9 @@ pub enum CableError {
          loops can only cross between two rows"
     )]
     NoCourse(VertexId, VertexId),
+    /// The path has gone round a tube and comes to an edge again.
+    #[error("the cable goes round the tube and comes to edge {0}–{1} again: it has more loops than the row")]
+    Round(VertexId, VertexId),
     /// An edge lies in another cable.
     #[error("edge {0}–{1} is in a cable already: clear that one first")]
     Taken(VertexId, VertexId),
@@ -124,7 +127,11 @@ impl Cable {
                 return Err(CableError::NoCourse(ends[0], ends[1]));
             }
         }
-        Ok(())
+        let twice = |i: usize| self.path[..i].windows(2).any(|w| *w == self.path[i - 1..=i]);
+        match (2..self.path.len()).find(|i| twice(*i)) {
+            Some(i) => Err(CableError::Round(self.path[i - 1], self.path[i])),
+            None => Ok(()),
+        }
     }
 
     /// Whether the edge between two vertices lies in this cable.
@@ -148,7 +155,8 @@ impl StitchMesh {
             let (place, _) = cable.crossing()[i];
             mesh.half_edge_between(cable.path[place], cable.path[place + 1])
         });
-        crossed.or_else(|| mesh.twin(top))
+        // Where tops meet tops the yarn goes on as that of the other loop.
+        crossed.or_else(|| mesh.twin(top).filter(|t| self.is_bottom(*t)))
     }
 
     /// Sets a cable. All ids survive.

@@ -8,28 +8,29 @@ use crate::ids::HalfEdgeId;
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::{NodeKind, YarnNet};
 
-/// The top half-edges whose loops nothing holds, except live ones. Empty for every fabric that stays together.
+/// The top half-edges whose loops nothing holds, except live ones. Empty for every fabric that stays together; what can fall
+/// apart is a loop slipped row after row up to where tops meet tops, which no knitter works.
 pub fn loose_loops(stitches: &StitchMesh, net: &YarnNet) -> Vec<HalfEdgeId> {
     let holds = |visit: u32| {
         let node = net.visits[visit as usize].node;
         matches!(net.nodes[node.index()].kind, NodeKind::Stitch | NodeKind::Thread)
     };
     let loose = net.loops.iter().filter(|l| !l.head.clone().any(holds));
-    loose.map(|l| l.top).filter(|top| !reaches_live(stitches, *top)).collect()
+    loose.map(|l| l.top).filter(|top| !stitches.is_live(handed_on_to(stitches, *top))).collect()
 }
 
-/// Whether the loop on a top edge is live, or handed on until it is.
-fn reaches_live(stitches: &StitchMesh, top: HalfEdgeId) -> bool {
+/// The top edge at which the loop on a top edge ends up, handed on by the stitches that slip it: its own if none does.
+pub fn handed_on_to(stitches: &StitchMesh, top: HalfEdgeId) -> HalfEdgeId {
     let mut at = top;
     // Handed on once a row at the most; cables may take it aside, but not back.
     for _ in 0..stitches.mesh().face_count() {
-        let Some(bottom) = stitches.loop_above(at) else { return stitches.is_live(at) };
+        let Some(bottom) = stitches.loop_above(at) else { break };
         let face = stitches.mesh().face(bottom);
         let slipped = stitches.stitch(face).ops.iter().position(|op| op.make.passes_on());
         match slipped.and_then(|i| stitches.tops(face).nth(i)) {
             Some(next) => at = next,
-            None => return false,
+            None => break,
         }
     }
-    false
+    at
 }

@@ -17,7 +17,7 @@ use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::{Make, Op, Stitch};
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::unravel::loose_loops;
+use stitch_mesh::unravel::{handed_on_to, loose_loops};
 use tests::fabrics;
 
 /// Numbers from which one edit is made up.
@@ -209,7 +209,14 @@ fn check_yarn(fabric: &Fabric) {
     let net = &fabric.net;
     assert!(net.nodes.iter().all(|n| n.position.is_finite()));
     assert!(fabric.state().fits(net));
-    assert_eq!(loose_loops(&fabric.stitches, net), [], "a loop that nothing holds");
+    let loose = loose_loops(&fabric.stitches, net);
+    // Slipped all the way to where tops meet tops a loop ends in another one: then the project has a problem that says so.
+    let meets_tops = |top: &HalfEdgeId| {
+        let last = handed_on_to(&fabric.stitches, *top);
+        fabric.stitches.mesh().twin(last).is_some_and(|t| !fabric.stitches.is_bottom(t))
+    };
+    let loose: Vec<_> = loose.iter().filter(|top| !meets_tops(top)).collect();
+    assert!(loose.is_empty(), "loops that nothing holds: {loose:?}");
     for (v, visit) in net.visits.iter().enumerate() {
         let stack = &net.nodes[visit.node.index()].visits;
         assert_eq!(stack.iter().filter(|s| s.index() == v).count(), 1);
@@ -318,7 +325,7 @@ fn edit(which: usize, dice: &[Dice]) -> usize {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 250, max_shrink_iters: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 250, max_shrink_iters: 3000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_edits_leave_a_stitch_mesh_and_can_be_undone(

@@ -151,6 +151,9 @@ fn cables_that_cannot_cross_say_why() {
     assert!(set(&mut stitches, straight).contains("nothing crosses"));
     let twice = Cable { front: vec![1, 1], ..cross(&path, 2, 2) };
     assert!(set(&mut stitches, twice).contains("front has to name"));
+    let mut narrow = tube(3, 3, StitchSize::of_width(3e-3)).unwrap();
+    let round: Vec<VertexId> = [3, 4, 5, 3, 4].map(VertexId).to_vec();
+    assert!(set(&mut narrow, cross(&round, 2, 2)).contains("goes round the tube"));
     stitches.set_cable(cross(&path, 2, 2)).unwrap();
     assert!(set(&mut stitches, cross(&path, 2, 2)).contains("in a cable already"));
     assert_eq!(stitches.clear_cables(&[[path[1], path[0]]]), 1);
