@@ -5,7 +5,7 @@
 //! | `project` | what a project is, and its file |
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
 //! | `relax` | relaxing the stitch mesh of a project, and how even it is |
-//! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program |
+//! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program, the contact sheet of stitches |
 //! | `cli` | the command line |
 //! | `window` | the same document with a mouse |
 
@@ -22,4 +22,5 @@ pub mod problems;
 pub mod project;
 pub mod relax;
 pub mod scenes;
+pub mod sheet;
 pub mod window;

@@ -18,12 +18,12 @@ pub fn render_image(
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     renderer.draw(gpu, &mut encoder, &viewport, camera, &scene);
     gpu.queue.submit([encoder.finish()]);
-    read_back(gpu, &viewport)
+    read_back(gpu, viewport.picture())
 }
 
-/// Waits for what was submitted and copies a viewport's picture into memory.
-pub fn read_back(gpu: &Gpu, viewport: &Viewport) -> Result<RgbaImage, RenderError> {
-    let [width, height] = viewport.size();
+/// Waits for what was submitted and copies a picture (four bytes a pixel) into memory.
+pub fn read_back(gpu: &Gpu, picture: &wgpu::Texture) -> Result<RgbaImage, RenderError> {
+    let (width, height) = (picture.width(), picture.height());
     let row = width * 4;
     // Rows of a copied texture are padded.
     let stride = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -35,7 +35,7 @@ pub fn read_back(gpu: &Gpu, viewport: &Viewport) -> Result<RgbaImage, RenderErro
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        viewport.picture().as_image_copy(),
+        picture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout {
@@ -44,7 +44,7 @@ pub fn read_back(gpu: &Gpu, viewport: &Viewport) -> Result<RgbaImage, RenderErro
                 rows_per_image: None,
             },
         },
-        viewport.picture().size(),
+        picture.size(),
     );
     gpu.queue.submit([encoder.finish()]);
 

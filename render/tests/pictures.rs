@@ -154,7 +154,7 @@ fn a_viewport_is_reused_resized_and_drawn_again() {
         let mut encoder = gpu().device.create_command_encoder(&Default::default());
         renderer.draw(gpu(), &mut encoder, &viewport, &Camera::default(), scene);
         gpu().queue.submit([encoder.finish()]);
-        at(&read_back(gpu(), &viewport).unwrap(), 0.5, 0.5)
+        at(&read_back(gpu(), viewport.picture()).unwrap(), 0.5, 0.5)
     };
     assert!(is_background(show(&scene)));
     scene.set_faces(gpu(), &square(Vec3::ZERO, RED)).unwrap();

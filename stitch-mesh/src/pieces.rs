@@ -1,5 +1,6 @@
 //! Plain pieces of fabric, stitch by stitch: the rectangle and the tube that swatches and experiments begin with.
 
+use crate::cable::CableError;
 use crate::edge_counts::StitchSize;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
@@ -25,6 +26,9 @@ pub enum PieceError {
     /// Nor a stitch mesh.
     #[error(transparent)]
     StitchMesh(#[from] StitchMeshError),
+    /// A cable cannot cross.
+    #[error(transparent)]
+    Cable(#[from] CableError),
 }
 
 /// A flat piece of `wide` × `high` knit stitches in the plane z = 0, front to +z, wales up along +y, centred on the origin.

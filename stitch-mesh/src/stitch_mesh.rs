@@ -98,15 +98,6 @@ pub enum StitchMeshError {
     },
 }
 
-/// A stitch as it is meant for a face with so many course edges: one symbol stands for yarn-overs that begin from nothing and
-/// for those above a loop of the border, and the face tells which.
-fn fitted(mut stitch: Stitch, edges: usize) -> Stitch {
-    if stitch.bottoms() == 1 && !stitch.holds() && edges == stitch.tops() {
-        stitch.stack.clear();
-    }
-    stitch
-}
-
 impl StitchMesh {
     /// Puts mesh and stitches together.
     ///
@@ -117,8 +108,6 @@ impl StitchMesh {
             return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
         }
         let faces = mesh.face_count();
-        let fitted = mesh.faces().zip(stitches).map(|(f, s)| fitted(s, mesh.face_half_edges(f).len() - 2));
-        let stitches = fitted.collect();
         let stitch_mesh = Self {
             mesh,
             stitches,
@@ -186,7 +175,6 @@ impl StitchMesh {
     /// [`StitchMeshError`] where the stitch does not fit; nothing is changed then.
     pub fn set_stitch(&mut self, face: FaceId, stitch: Stitch) -> Result<(), StitchMeshError> {
         let old = self.stitches.get(face.index()).ok_or(StitchMeshError::NoFace(face))?;
-        let stitch = fitted(stitch, old.bottoms() + old.tops());
         if (old.bottoms(), old.tops()) != (stitch.bottoms(), stitch.tops()) {
             let edges = old.bottoms() + old.tops();
             let (bottoms, tops) = (stitch.bottoms(), stitch.tops());

@@ -2,7 +2,7 @@
 
 use crate::cable::Cable;
 use crate::edge_counts::StitchSize;
-use crate::ids::{FaceId, VertexId};
+use crate::ids::VertexId;
 use crate::pieces::{PieceError, from_rows};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
@@ -43,30 +43,29 @@ pub fn of_stitch(stitch: &Stitch, size: StitchSize) -> Result<StitchMesh, PieceE
     from_rows(&rows, size)
 }
 
-/// A rib of knits between purls with a cable: strands, order and front as in [`Cable`], crossed again and again, `rows`
-/// apart. Crossings take turns.
+/// Knits between purls, with cables one above the other at equal distances. Of each cable the strands, order and front
+/// count; it comes with the number of knits on its left.
 ///
 /// # Errors
-/// A cable that cannot cross, as [`PieceError`] of its size.
+/// A piece that is too small, or a cable that cannot cross.
 pub fn of_cable(
     crossings: &[(usize, Cable)],
     height: usize,
     size: StitchSize,
 ) -> Result<StitchMesh, PieceError> {
-    let loops = crossings.iter().map(|(left, c)| left + c.loops()).max().unwrap_or(0);
-    let row: Vec<Stitch> = (0..loops + 4)
-        .map(|i| if (2..loops + 2).contains(&i) { Stitch::knit() } else { Stitch::purl() })
-        .collect();
-    let wide = row.len();
+    /// Purls on both sides.
+    const BESIDE: usize = 2;
+    let knits = crossings.iter().map(|(left, c)| left + c.loops()).max().unwrap_or(0);
+    let mut row = vec![Stitch::purl(); knits + 2 * BESIDE];
+    row[BESIDE..BESIDE + knits].fill(Stitch::knit());
+    // Every row boundary of the piece has its vertices from left to right.
+    let boundary = row.len() + 1;
     let mut piece = from_rows(&vec![row; height], size)?;
     let apart = height / (crossings.len() + 1);
     for (i, (left, cable)) in crossings.iter().enumerate() {
-        let above = (i + 1) * apart * (wide + 1) + 2 + left;
-        let path = (0..=cable.loops()).map(|k| VertexId::new(above + k)).collect();
-        let cable = Cable { path, ..cable.clone() };
-        // A crossing that does not fit is left out: the swatch shows the rib then.
-        let _ = piece.set_cable(cable);
+        let first = (i + 1) * apart * boundary + BESIDE + left;
+        let path = (first..=first + cable.loops()).map(VertexId::new).collect();
+        piece.set_cable(Cable { path, ..cable.clone() })?;
     }
-    debug_assert_eq!(piece.mesh().face_vertices(FaceId(0)).next(), Some(VertexId(0)));
     Ok(piece)
 }

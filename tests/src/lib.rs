@@ -20,6 +20,10 @@ use std::sync::OnceLock;
 /// The meshes that ship with the program.
 pub const ASSETS: [&str; 5] = ["swatch", "cowl", "poncho", "hat", "pullover"];
 
+/// A session that makes a cabled, ribbed and shaped panel of the swatch without labels: a script for `purlwise edit`, and
+/// what a person does in the window.
+pub const PANEL: &str = include_str!("panel.jsonl");
+
 /// The root of the workspace.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()

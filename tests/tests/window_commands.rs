@@ -3,18 +3,9 @@
 use app::command::Command;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use tests::window::{Window, knitted, swatch};
+use tests::window::{Window, fabric, knitted, swatch};
 
 const NONE: Modifiers = Modifiers::NONE;
-
-fn fabric() -> (Window, Vec<Vec<u32>>) {
-    let mut window = Window::new(knitted());
-    window.press("Stitches");
-    window.press("Front");
-    let rows = window.editor().project().fabric().unwrap().stitches.rows();
-    let rows = rows.into_iter().map(|r| r.faces.into_iter().map(|f| f.0).collect()).collect();
-    (window, rows)
-}
 
 /// Writes into the text field that has the focus.
 fn write(window: &mut Window, text: &str) {

@@ -9,7 +9,7 @@ use crate::document::Document;
 use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
 use crate::project::{DEFAULT_STITCH_WIDTH, Project};
-use crate::{export, files};
+use crate::{export, files, sheet};
 use anyhow::{Context, Result, bail};
 use clap::{Parser, Subcommand, ValueEnum};
 use render::{Camera, Gpu, NamedView, render_image};
@@ -125,6 +125,11 @@ enum Verb {
         output: PathBuf,
         #[command(flatten)]
         print: Output,
+    },
+    /// Draws the contact sheet of all stitches and cables, front and back
+    Stitches {
+        #[arg(short, default_value = "out/stitches.png")]
+        output: PathBuf,
     },
     /// Facts about a project
     Inspect {
@@ -278,6 +283,12 @@ fn run(arguments: Arguments) -> Result<()> {
             let facts = json!({"file": output, "yarns": curves.curves.len(), "points": points});
             print.print(&facts, &format!("{} yarns, {points} points", curves.curves.len()));
             Ok(())
+        }
+        Verb::Stitches { output } => {
+            let bar = interrupt::step_counter("swatches")?;
+            let sheet = sheet::draw(&Gpu::headless()?, &mut |done, _| bar.set_position(done as u64))?;
+            bar.finish_and_clear();
+            files::write_png(&output, &sheet)
         }
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }

@@ -27,9 +27,8 @@ pub(super) fn tessellate(project: &mut Project, width_mm: Option<f64>) -> Result
         None => counts(project)?,
     };
     let mut stitches = cut(&project.labelled, &counts)?;
-    match &project.fabric {
-        Some(fabric) => stitches.keep_from(&fabric.stitches),
-        None => {}
+    if let Some(fabric) = &project.fabric {
+        stitches.keep_from(&fabric.stitches);
     }
     if project.fabric.is_none() || project.size != size {
         // Yarn as thick as the stitches came out: on short edges they are narrower than was asked for.

@@ -36,7 +36,23 @@
 //! - Without a surface vertices move in space with the same forces, less that of folding.
 //!
 //! # What was learnt
-//! @@
+//! On two cores, to the end (`cargo bench --bench mesh_relax`; processor seconds, as other work ran beside it, and half of
+//! that on the clock of two free cores):
+//!
+//! | | stitches | steps | iterations of CG | processor time [s] |
+//! |---|---|---|---|---|
+//! | pullover | 23 168 | 6 | 443 | 1.0 … 1.5 |
+//! | the same, finer | 65 654 | 7 | 926 | 4.8 … 6.1 |
+//! | tube, edges of a third to two and a half rest lengths | 21 600 | 9 | 997 | 2.0 |
+//!
+//! - Expected were 30 steps of 60 iterations. It is 6 to 9 steps of 100: the energy is so nearly convex that h may be
+//!   ten times as large after every step, and Newton's method does the rest. What limits a bad start is how far a vertex may
+//!   go in one step.
+//! - Half of the time is the product with the matrix, bound by memory: 11 blocks of 2 × 2 a row. The iterations grow with
+//!   the number of stitches across the fabric, as the preconditioner sees one vertex at a time; beyond some 200 000
+//!   stitches a coarse level would pay.
+//! - A tube may creep round itself for ever, at 1e-5 of its energy a step: hence [`RelaxParams::tolerance`] alone is no end.
+//! - Without `fold` the crown of a hat with too few decreases came out with stitches under each other, at a *lower* energy.
 
 mod bvh;
 mod conjugate;

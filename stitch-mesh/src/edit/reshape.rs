@@ -1,7 +1,6 @@
 //! Stitches that gain or lose a loop: what can be kept of them, and what is new.
 
 use crate::stitch::{Make, Op, Stitch};
-use smallvec::SmallVec;
 
 /// A plain operation.
 fn plain(make: Make) -> Op {
@@ -85,13 +84,17 @@ pub fn pass_bottom(left: &mut Stitch, right: &mut Stitch, to_left: bool) {
     }
 }
 
-/// Makes a stitch fit its loops again after it has changed: yarn-overs where there is no loop below, and something that holds
-/// them where there are some. `borne` says whether loops come from below.
+/// Makes a stitch fit its loops again after it has changed: yarn-overs where there is no loop below, something that holds them
+/// where there are some, and a loop handed on only where it is the only one. `borne` says whether loops come from below.
 pub fn mend(stitch: &mut Stitch, borne: bool) {
-    if stitch.bottoms() == 0 {
-        let over = stitch.ops.iter().map(|op| Op { make: Make::YarnOver, ..*op });
-        stitch.ops = over.collect::<SmallVec<_>>();
-    } else if !stitch.holds() && (borne || stitch.bottoms() > 1) {
+    let bottoms = stitch.bottoms();
+    if bottoms == 0 {
+        stitch.ops.iter_mut().for_each(|op| op.make = Make::YarnOver);
+        return;
+    }
+    let handed_on = stitch.ops.iter_mut().filter(|op| op.make.passes_on());
+    handed_on.skip(usize::from(bottoms == 1)).for_each(|op| *op = plain(Make::Knit));
+    if !stitch.holds() && (borne || bottoms > 1) {
         stitch.ops[0] = plain(Make::Knit);
     }
 }
@@ -118,6 +121,9 @@ mod tests {
         assert_eq!(changed("d213k", |s| add_bottom(s, 0)), "d3124k");
         assert_eq!(changed("d312p", |s| remove_bottom(s, 0)), "d21p");
         assert_eq!(changed("d1", |s| add_top(s, 0)), "k");
+        assert_eq!(changed("s", |s| add_top(s, 0)), "sk");
+        assert_eq!(changed("s", |s| add_bottom(s, 0)), "d12k");
+        assert_eq!(changed("k", |s| remove_bottom(s, 0)), "d0y");
     }
 
     #[test]

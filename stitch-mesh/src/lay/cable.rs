@@ -16,7 +16,7 @@ use crate::yarn_net::NodeKind;
 use glam::DVec3;
 
 /// What remains of the length of a crossing leg.
-const TAKEN_IN: f64 = 0.6;
+const TAKEN_IN: f64 = 0.8;
 /// How far the strip reaches into the stitches below and above, as a part of their height.
 const REACH: [f64; 2] = [0.45, 0.08];
 /// Where the legs of a loop leave its top edge, and arrive at a bottom edge, in widths of the edge.

@@ -3,8 +3,7 @@
 use crate::command::Command;
 use crate::window::editor::Editor;
 use egui::Ui;
-use patterns::alternation::{basketweave, garter, moss, rib};
-use patterns::chart::{Chart, ChartError};
+use patterns::alternation::{Lines, basketweave, garter, moss, rib};
 
 /// A fabric of knit and purl by turns.
 struct Alternation {
@@ -13,7 +12,7 @@ struct Alternation {
     /// What its numbers are.
     numbers: &'static [&'static str],
     first: [usize; 2],
-    chart: fn([usize; 2]) -> Result<Chart, ChartError>,
+    lines: fn([usize; 2]) -> Lines,
 }
 
 const ALTERNATIONS: [Alternation; 6] = [
@@ -22,42 +21,42 @@ const ALTERNATIONS: [Alternation; 6] = [
         what: "Knit on the front",
         numbers: &[],
         first: [1, 0],
-        chart: |[n, m]| rib(n, m),
+        lines: |[n, _]| garter(n, 0),
     },
     Alternation {
         name: "Reverse",
         what: "Purl on the front: stockinette from behind",
         numbers: &[],
         first: [0, 1],
-        chart: |[n, m]| rib(n, m),
+        lines: |[_, n]| garter(0, n),
     },
     Alternation {
         name: "Rib",
         what: "Columns of knit and purl by turns: draws in and stretches",
         numbers: &["knit columns", "purl columns"],
         first: [2, 2],
-        chart: |[n, m]| rib(n, m),
+        lines: |[n, m]| rib(n, m),
     },
     Alternation {
         name: "Garter",
         what: "Rows of knit and purl by turns, as seen from the front: lies flat",
-        numbers: &[],
+        numbers: &["knit rows", "purl rows"],
         first: [1, 1],
-        chart: |_| Ok(garter()),
+        lines: |[n, m]| garter(n, m),
     },
     Alternation {
         name: "Moss",
-        what: "Knit and purl by turns both ways (seed)",
-        numbers: &[],
-        first: [1, 1],
-        chart: |_| Ok(moss()),
+        what: "Knit and purl by turns both ways; 1 row high it is seed, 2 rows double moss",
+        numbers: &["rows"],
+        first: [1, 0],
+        lines: |[n, _]| moss(n),
     },
     Alternation {
         name: "Basket",
-        what: "Basketweave: blocks of knit and purl like a chequerboard; 1 × 2 is double moss",
+        what: "Basketweave: blocks of knit and purl like a chequerboard",
         numbers: &["stitches", "rows"],
         first: [4, 4],
-        chart: |[n, m]| basketweave(n, m),
+        lines: |[n, m]| basketweave(n, m),
     },
 ];
 
@@ -82,7 +81,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         for (kind, numbers) in ALTERNATIONS.iter().zip(&mut editor.panel.alternation.0) {
             let button = egui::Button::new(kind.name).min_size(egui::vec2(86.0, 0.0));
             if ui.add(button).on_hover_text(kind.what).clicked() {
-                chosen = (kind.chart)(*numbers).ok();
+                chosen = Some((kind.lines)(*numbers));
             }
             for (number, of) in numbers.iter_mut().zip(kind.numbers) {
                 let field = ui.add(egui::DragValue::new(number).range(1..=99).speed(0.05));
@@ -96,6 +95,6 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
     if let Some(chart) = chosen {
         let selected = &editor.selection().faces;
         let faces = (!selected.is_empty()).then(|| selected.iter().map(|f| f.0).collect());
-        editor.act(Command::SetChart { chart: chart.lines(), rows: None, faces });
+        editor.act(Command::SetChart { chart, rows: None, faces });
     }
 }
