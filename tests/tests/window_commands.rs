@@ -68,6 +68,19 @@ fn the_status_bar_names_what_is_under_the_pointer() {
 }
 
 #[test]
+fn stages_change_under_the_pointer() {
+    let (mut window, rows) = fabric();
+    let last = rows.last().and_then(|r| r.last()).copied().unwrap_or(0);
+    window.harness.hover_at(window.at_stitch(last, None));
+    for (key, says) in
+        [(Key::Num2, "edge "), (Key::Num4, "stitch "), (Key::Num1, "edge "), (Key::Num3, "stitch ")]
+    {
+        window.key(Modifiers::COMMAND, key);
+        assert!(window.says(says), "the pointer is over a part of what is shown now: {says}");
+    }
+}
+
+#[test]
 fn a_click_in_the_history_goes_there() {
     let (mut window, rows) = fabric();
     window.click_stitch(rows[1][1], None, NONE);
