@@ -73,12 +73,13 @@ pub fn problems(project: &Project) -> Vec<Problem> {
     found
 }
 
-/// Increases and decreases without room for their loops.
+/// Increases and decreases without room for their loops. Where a side is a point (the tip of a crown) loops are drawn together
+/// on purpose.
 fn squeezed(stitches: &StitchMesh, size: StitchSize) -> impl Iterator<Item = Problem> + '_ {
     let mesh = stitches.mesh();
     mesh.faces().filter_map(move |face| {
         let (below, above) = (stitches.bottoms(face), stitches.tops(face));
-        if below.len() == above.len() {
+        if below.len() == above.len() || below.len().min(above.len()) == 0 {
             return None;
         }
         let more: Vec<_> = if below.len() > above.len() { below.collect() } else { above.collect() };

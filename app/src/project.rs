@@ -17,7 +17,7 @@ use stitch_mesh::dye::Dye;
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
 use stitch_mesh::ids::{FaceId, HalfEdgeId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
-use stitch_mesh::lay::lay;
+use stitch_mesh::lay::{lay, relay};
 use stitch_mesh::marks::Marks;
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::obj::{Unit, read_obj};
@@ -65,6 +65,12 @@ impl Fabric {
     /// The fabric of a stitch mesh, its yarn just laid.
     pub fn new(stitches: StitchMesh) -> Self {
         let net = Arc::new(lay(&stitches));
+        Self { stitches: Arc::new(stitches), net, state: None, facts: None }
+    }
+
+    /// The fabric after its stitches have been edited, its yarn laid again where it has to be.
+    pub fn edited(&self, stitches: StitchMesh) -> Self {
+        let net = Arc::new(relay(&self.net, &self.stitches, &stitches));
         Self { stitches: Arc::new(stitches), net, state: None, facts: None }
     }
 

@@ -1,54 +1,62 @@
-//! Fabrics of knit and purl by turns, as charts of one repeat.
+//! Alternations of knit and purl that every knitter knows, as charts.
+//!
+//! Seen from the front; a flat piece worked to and fro shows the same there as a tube.
 
-/// Lines of a chart, the lowest row first, as [`crate::chart::Chart`] reads them.
-pub type Lines = Vec<String>;
+use crate::chart::{Chart, ChartError};
+use stitch_mesh::stitch::Stitch;
 
-/// Rib: columns of `knit` stitches by turns with columns of `purl` stitches.
-pub fn rib(knit: usize, purl: usize) -> Lines {
-    vec![runs(&[("k", knit), ("p", purl)])]
+fn line(stretches: &[(usize, Stitch)]) -> Vec<Stitch> {
+    stretches.iter().flat_map(|(n, stitch)| std::iter::repeat_n(stitch.clone(), *n)).collect()
 }
 
-/// Garter: `knit` rows by turns with `purl` rows, as seen from the front; 1 and 1 is plain garter.
-pub fn garter(knit: usize, purl: usize) -> Lines {
-    [vec!["k".to_owned(); knit], vec!["p".to_owned(); purl]].concat()
+/// Columns of `n` knits and `m` purls by turns.
+///
+/// # Errors
+/// [`ChartError::Empty`] for `n` = `m` = 0.
+pub fn rib(n: usize, m: usize) -> Result<Chart, ChartError> {
+    Chart::new(vec![line(&[(n, Stitch::knit()), (m, Stitch::purl())])])
 }
 
-/// Moss: knit and purl by turns in both directions, each kept for `height` rows; 1 is seed, 2 is double moss.
-pub fn moss(height: usize) -> Lines {
-    basketweave(1, height)
+/// Rows of knits and rows of purls by turns.
+pub fn garter() -> Chart {
+    Chart { rows: vec![vec![Stitch::knit()], vec![Stitch::purl()]] }
 }
 
-/// Basketweave: blocks of `width` × `height` stitches, knit and purl like a chequerboard.
-pub fn basketweave(width: usize, height: usize) -> Lines {
-    let lower = vec![runs(&[("k", width), ("p", width)]); height];
-    let upper = vec![runs(&[("p", width), ("k", width)]); height];
-    [lower, upper].concat()
+/// Moss or seed stitch: knits and purls by turns along rows and columns.
+pub fn moss() -> Chart {
+    Chart { rows: blocks(1, 1) }
 }
 
-fn runs(runs: &[(&str, usize)]) -> String {
-    let symbols: Vec<&str> = runs.iter().flat_map(|(s, n)| std::iter::repeat_n(*s, *n)).collect();
-    symbols.join(" ")
+/// Blocks of `n` stitches by `m` rows, knit and purl by turns like the squares of a chessboard.
+///
+/// # Errors
+/// [`ChartError::Empty`] where a block has no stitches.
+pub fn basketweave(n: usize, m: usize) -> Result<Chart, ChartError> {
+    Chart::new(blocks(n, m))
+}
+
+fn blocks(n: usize, m: usize) -> Vec<Vec<Stitch>> {
+    let knit_first = line(&[(n, Stitch::knit()), (n, Stitch::purl())]);
+    let purl_first = line(&[(n, Stitch::purl()), (n, Stitch::knit())]);
+    [vec![knit_first; m], vec![purl_first; m]].concat()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chart::Chart;
 
     #[test]
-    fn repeats_are_those_of_a_knitting_book() {
-        assert_eq!(rib(2, 1), ["k k p"]);
-        assert_eq!(garter(1, 1), ["k", "p"]);
-        assert_eq!(moss(1), ["k p", "p k"]);
-        assert_eq!(moss(2), ["k p", "k p", "p k", "p k"]);
-        assert_eq!(basketweave(3, 2), ["k k k p p p", "k k k p p p", "p p p k k k", "p p p k k k"]);
+    fn alternations_are_what_their_names_say() {
+        assert_eq!(rib(2, 1).unwrap().lines(), ["k k p"]);
+        assert_eq!(garter().lines(), ["k", "p"]);
+        assert_eq!(moss().lines(), ["k p", "p k"]);
+        assert_eq!(basketweave(2, 2).unwrap().lines(), ["k k p p", "k k p p", "p p k k", "p p k k"]);
+        assert!(rib(0, 0).is_err() && basketweave(0, 3).is_err() && basketweave(3, 0).is_err());
     }
 
     #[test]
-    fn all_of_them_are_charts() {
-        for lines in [rib(1, 3), garter(2, 2), moss(2), basketweave(4, 4)] {
-            assert!(lines.join("\n").parse::<Chart>().is_ok(), "{lines:?}");
-        }
-        assert!(rib(0, 0).join("\n").parse::<Chart>().is_err(), "nothing is no chart");
+    fn a_chart_reads_its_own_lines() {
+        let chart = basketweave(3, 2).unwrap();
+        assert_eq!(chart.lines().join("\n").parse::<Chart>().unwrap(), chart);
     }
 }

@@ -18,6 +18,11 @@ pub fn carry_over(
     new_net: &YarnNet,
     old_face: impl Fn(FaceId) -> Option<FaceId>,
 ) -> YarnState {
+    // Stacked otherwise at some nodes, nothing more: everything is where it was.
+    let runs = |net: &YarnNet| net.visits.iter().map(|v| (v.node, v.yarn, v.u.to_bits())).collect::<Vec<_>>();
+    if old_net.nodes.len() == new_net.nodes.len() && runs(old_net) == runs(new_net) {
+        return old_state.clone();
+    }
     let mut state = new_net.laid_state();
     let mut moved: Vec<Option<DVec3>> = vec![None; new_net.nodes.len()];
     let mut slid = vec![0.0; new_net.visits.len()];

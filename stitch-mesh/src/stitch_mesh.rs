@@ -21,11 +21,13 @@ use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A mesh of stitches. See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StitchMesh {
-    mesh: PolygonMesh,
+    /// Shared between all states of a fabric that is edited without changing its faces.
+    mesh: Arc<PolygonMesh>,
     stitches: Vec<Stitch>,
     /// Colour of the yarn with which each stitch is worked.
     pub(crate) dyes: Vec<Dye>,
@@ -109,7 +111,7 @@ impl StitchMesh {
         }
         let faces = mesh.face_count();
         let stitch_mesh = Self {
-            mesh,
+            mesh: Arc::new(mesh),
             stitches,
             dyes: vec![Dye::UNDYED; faces],
             places: vec![None; faces],
@@ -151,12 +153,17 @@ impl StitchMesh {
     /// # Errors
     /// As [`PolygonMesh::moved_to`].
     pub fn moved_to(&self, positions: Vec<DVec3>) -> Result<Self, StitchMeshError> {
-        Ok(Self { mesh: self.mesh.moved_to(positions)?, ..self.clone() })
+        Ok(Self { mesh: Arc::new(self.mesh.moved_to(positions)?), ..self.clone() })
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &PolygonMesh {
         &self.mesh
+    }
+
+    /// Whether the mesh is the one of `other`, every id the same.
+    pub fn has_mesh_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh) || self.mesh == other.mesh
     }
 
     /// All stitches, [face_count].

@@ -17,6 +17,7 @@ use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::{Make, Op, Stitch};
 use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::unravel::loose_loops;
 use tests::fabrics;
 
 /// Numbers from which one edit is made up.
@@ -208,6 +209,56 @@ fn check_yarn(fabric: &Fabric) {
     let net = &fabric.net;
     assert!(net.nodes.iter().all(|n| n.position.is_finite()));
     assert!(fabric.state().fits(net));
+    assert_eq!(loose_loops(&fabric.stitches, net), [], "a loop that nothing holds");
+    for (v, visit) in net.visits.iter().enumerate() {
+        let stack = &net.nodes[visit.node.index()].visits;
+        assert_eq!(stack.iter().filter(|s| s.index() == v).count(), 1);
+    }
+    for segment in net.segments() {
+        let [a, b] = segment.ends.map(|v| net.visits[v.index()].u);
+        assert!(b + segment.wrap > a, "a segment without yarn");
+    }
+    check_joints(fabric);
+}
+
+/// The yarn of every stitch goes on into its neighbours': from the right one to the left along the row, and up through every
+/// course edge.
+fn check_joints(fabric: &Fabric) {
+    let (stitches, net) = (&fabric.stitches, &fabric.net);
+    let mesh = stitches.mesh();
+    let mut joined: HashSet<[FaceId; 2]> = HashSet::new();
+    for yarn in &net.yarns {
+        let mut before = None;
+        let visits = yarn.visits.clone().chain(yarn.period.map(|_| yarn.visits.start));
+        // Turns lie in no stitch.
+        for face in visits.filter_map(|v| net.nodes[net.visits[v as usize].node.index()].face) {
+            joined.extend(before.map(|b: FaceId| [b.min(face), b.max(face)]));
+            before = Some(face);
+        }
+    }
+    // A yarn-over has no place of its own where its yarn could be found.
+    let op =
+        |face: FaceId, i: usize| stitches.stitch(face).ops.get(i).is_none_or(|op| op.make != Make::YarnOver);
+    for h in (0..mesh.half_edge_count()).map(HalfEdgeId::new) {
+        let Some(twin) = mesh.twin(h).filter(|t| h < *t) else { continue };
+        let has_yarn_at = |h: HalfEdgeId| {
+            let face = mesh.face(h);
+            let tops = stitches.stitch(face).tops();
+            match () {
+                () if stitches.is_bottom(h) => stitches.stitch(face).holds(),
+                () if h == stitches.left(face) => op(face, 0),
+                () if h == stitches.right(face) => op(face, tops.saturating_sub(1)),
+                () => stitches.tops(face).position(|t| t == h).is_none_or(|i| op(face, i)),
+            }
+        };
+        let ends = [mesh.origin(h), mesh.tip(h)];
+        let crosses = stitches.cables().iter().any(|c| c.covers(ends[0], ends[1]));
+        let winds = stitches.is_wale(h) && stitches.marks().spiral;
+        if has_yarn_at(h) && has_yarn_at(twin) && !crosses && !winds {
+            let (f, g) = (mesh.face(h), mesh.face(twin));
+            assert!(f == g || joined.contains(&[f.min(g), f.max(g)]), "{f} and {g} are not joined");
+        }
+    }
 }
 
 fn check(project: &Project) {

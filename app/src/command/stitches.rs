@@ -2,7 +2,7 @@
 //! keeps its place.
 
 use super::{check_face, pins};
-use crate::project::{Fabric, Project};
+use crate::project::Project;
 use anyhow::{Context, Result};
 use patterns::chart::Chart;
 use stitch_mesh::cable::Cable;
@@ -20,10 +20,11 @@ pub(super) fn restitch(
     change: impl FnOnce(&mut StitchMesh) -> Result<()>,
 ) -> Result<()> {
     let before = project.clone();
-    let mut stitches = (*before.fabric()?.stitches).clone();
+    let old = before.fabric()?;
+    let mut stitches = (*old.stitches).clone();
     change(&mut stitches)?;
-    let fabric = Fabric::new(stitches);
-    project.scene.pins = pins::moved(&before.scene.pins, &before.fabric()?.net, &fabric.net, Some);
+    let fabric = old.edited(stitches);
+    project.scene.pins = pins::moved(&before.scene.pins, &old.net, &fabric.net, Some);
     project.fabric = Some(fabric);
     project.keep_yarn_of(&before, None);
     Ok(())

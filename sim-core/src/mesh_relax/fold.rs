@@ -14,8 +14,7 @@
 
 use glam::DVec3;
 
-/// s₀: corners larger than this feel nothing. Even fabric stays over 0.6, shaped pieces over 0.35; at 0.1 corners of crowded
-/// places fold between two steps.
+/// s₀: corners larger than this feel nothing; at rest they have 1.
 const FREE: f64 = 0.25;
 const LEAST: f64 = 0.2 * FREE;
 

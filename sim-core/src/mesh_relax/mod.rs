@@ -23,7 +23,7 @@
 //!    triangles by `walk`, until one moves nothing and gains nothing.
 //!
 //! A [`MeshRelaxation`] lives as long as somebody watches it; it holds a copy of the stitches and never changes the one that
-//! it was made from. It can be looked at and dropped between any two steps; a step takes some 20 ms for 20 000 stitches.
+//! it was made from. It can be looked at and dropped between any two steps; a step takes about 0.1 s for 20 000 stitches.
 //!
 //! # Differences from the paper
 //! - All forces are gradients of one energy (eq. 3 and 4 as printed are not; see `shear`, `strut`). So a step can be judged by
@@ -48,9 +48,9 @@
 //! - Expected were 30 steps of 60 iterations. It is 6 to 9 steps of 100: the energy is so nearly convex that h may be
 //!   ten times as large after every step, and Newton's method does the rest. What limits a bad start is how far a vertex may
 //!   go in one step.
-//! - Half of the time is the product with the matrix, bound by memory: 11 blocks of 2 × 2 a row. The iterations grow with
-//!   the number of stitches across the fabric, as the preconditioner sees one vertex at a time; beyond some 200 000
-//!   stitches a coarse level would pay.
+//! - An iteration takes 2.6 ms at 65 000 stitches, and all of CG about two thirds of the time. Its iterations grow with the
+//!   number of stitches across the fabric, as the preconditioner sees one vertex at a time: for much larger garments a coarse
+//!   level is what to add first.
 //! - A tube may creep round itself for ever, at 1e-5 of its energy a step: hence [`RelaxParams::tolerance`] alone is no end.
 //! - Without `fold` the crown of a hat with too few decreases came out with stitches under each other, at a *lower* energy.
 
@@ -58,6 +58,7 @@ mod bvh;
 mod conjugate;
 mod elements;
 mod fold;
+mod lists;
 mod locate;
 mod params;
 mod relaxer;

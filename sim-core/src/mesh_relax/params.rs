@@ -10,10 +10,10 @@ pub struct RelaxParams {
     /// a: height of a stitch over its width at rest, r_wale / r_course. The paper has 1; stitches are laid 2.25 mm high and
     /// 3 mm wide here, so 0.75.
     pub aspect: f64,
-    /// α, 0 … 1: how much of the surface the stitches fill at rest. At 1 they are at rest only where they can be spread
-    /// perfectly, and as wide parts are short of stitches, narrow parts are crowded: pressed stitches shear and buckle
-    /// sideways. Below 1 all are a little stretched and lie straight. At 0.95 edges end 2.6 % longer than at rest on
-    /// average, which is what rounding to whole stitches takes anyway; 0.8 draws borders and tips into curves.
+    /// α, 0 … 1: how much of the surface the stitches fill at rest. Below 1 all are a little stretched (at 0.95 by 2.6 %) and
+    /// lie straight. At 1 the bundled pullover comes out a little more even (3.3 % rms instead of 3.4 %), but where stitches
+    /// crowd they are pressed, and buckle sideways: the worst stitch at the crown of the hat is off by 40 % instead of 25 %.
+    /// At 0.8 both are less even (4.0 % and 4.1 %).
     pub fill: f64,
     /// κ_stretch, the stiffness of edges and diagonals.
     pub stretch: f64,
@@ -22,7 +22,7 @@ pub struct RelaxParams {
     /// κ_wale, the stiffness of wales against bending.
     pub wale: f64,
     /// κ_fold, the stiffness of corners against being folded over, on a surface only. Not in the paper; with 0 crowns of hats
-    /// fold, from 0.05 on they do not.
+    /// fold.
     pub fold: f64,
     /// The relaxation is settled when an unshortened step moves no vertex further than this [stitches].
     pub tolerance: f64,

@@ -22,7 +22,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Longest way of a vertex in one step [stitches]. With 3 a tube that is badly distorted along takes 14 steps instead of 9;
-/// with 30 nothing is won any more, and the steps that reach across bends are taken for nothing.
+/// with 30 nothing more is won.
 const LONGEST: f64 = 10.0;
 
 /// First step and longest one. At 1e6 a whole fabric may still slide along itself, but the system stays solvable.

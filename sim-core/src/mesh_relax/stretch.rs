@@ -17,8 +17,7 @@
 
 use glam::DVec3;
 
-/// Length under which the energy is continued quadratically, over the rest length. Tessellations begin with edges of a fifth
-/// of the rest length; nothing comes under a twentieth except at folded tips.
+/// Length under which the energy is continued quadratically, over the rest length.
 const SHORTEST: f64 = 0.05;
 
 /// V/κ and V'/κ, for a length and a rest length.

@@ -10,6 +10,7 @@
 //! are independent: they run in parallel, without locks, and the sums are the same whatever the number of threads.
 
 use super::elements::Elements;
+use super::lists::Lists;
 use super::params::RelaxParams;
 use super::{fold, shear, stretch, strut};
 use glam::DVec3;
@@ -37,28 +38,6 @@ struct TripleAt {
     vertices: [u32; 3],
     blocks: [u32; 3],
     role: usize,
-}
-
-/// Lists for each vertex, one after another.
-struct Lists<T> {
-    start: Vec<u32>,
-    items: Vec<T>,
-}
-
-impl<T> Lists<T> {
-    /// Sorts items into lists; the order within a list is that of `items`.
-    fn new(count: usize, items: Vec<(u32, T)>) -> Self {
-        let mut items = items;
-        items.sort_by_key(|(v, _)| *v);
-        let mut start = vec![0; count + 1];
-        items.iter().for_each(|(v, _)| start[*v as usize + 1] += 1);
-        (0..count).for_each(|v| start[v + 1] += start[v]);
-        Self { start, items: items.into_iter().map(|(_, item)| item).collect() }
-    }
-
-    fn of(&self, v: usize) -> &[T] {
-        &self.items[self.start[v] as usize..self.start[v + 1] as usize]
-    }
 }
 
 /// Which vertices touch which, and by what.

@@ -32,12 +32,13 @@
 //!
 //! # Speed
 //! Templates are made once for each kind of stitch, so placing a node costs one weighted sum of corners, and following yarn
-//! is a walk over flat arrays.
+//! is a walk over flat arrays. After an edit that leaves all yarns where they run, [`relay`] takes the net from before.
 
 mod bind_off;
 mod border;
 mod cable;
 mod draft;
+mod relay;
 mod seam;
 mod spiral;
 mod template;
@@ -52,6 +53,7 @@ use crate::ids::HalfEdgeId;
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::YarnNet;
 use draft::Draft;
+pub use relay::relay;
 
 /// Lays the yarn of a stitch mesh. The same mesh always gives the same net.
 pub fn lay(stitches: &StitchMesh) -> YarnNet {

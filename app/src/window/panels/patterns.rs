@@ -3,7 +3,8 @@
 use crate::command::Command;
 use crate::window::editor::Editor;
 use egui::Ui;
-use patterns::alternation::{Lines, basketweave, garter, moss, rib};
+use patterns::alternation::{basketweave, garter, moss, rib};
+use patterns::chart::{Chart, ChartError};
 
 /// A fabric of knit and purl by turns.
 struct Alternation {
@@ -12,7 +13,7 @@ struct Alternation {
     /// What its numbers are.
     numbers: &'static [&'static str],
     first: [usize; 2],
-    lines: fn([usize; 2]) -> Lines,
+    chart: fn([usize; 2]) -> Result<Chart, ChartError>,
 }
 
 const ALTERNATIONS: [Alternation; 6] = [
@@ -21,42 +22,42 @@ const ALTERNATIONS: [Alternation; 6] = [
         what: "Knit on the front",
         numbers: &[],
         first: [1, 0],
-        lines: |[n, _]| garter(n, 0),
+        chart: |[n, m]| rib(n, m),
     },
     Alternation {
         name: "Reverse",
         what: "Purl on the front: stockinette from behind",
         numbers: &[],
         first: [0, 1],
-        lines: |[_, n]| garter(0, n),
+        chart: |[n, m]| rib(n, m),
     },
     Alternation {
         name: "Rib",
         what: "Columns of knit and purl by turns: draws in and stretches",
         numbers: &["knit columns", "purl columns"],
         first: [2, 2],
-        lines: |[n, m]| rib(n, m),
+        chart: |[n, m]| rib(n, m),
     },
     Alternation {
         name: "Garter",
         what: "Rows of knit and purl by turns, as seen from the front: lies flat",
-        numbers: &["knit rows", "purl rows"],
+        numbers: &[],
         first: [1, 1],
-        lines: |[n, m]| garter(n, m),
+        chart: |_| Ok(garter()),
     },
     Alternation {
         name: "Moss",
-        what: "Knit and purl by turns both ways; 1 row high it is seed, 2 rows double moss",
-        numbers: &["rows"],
-        first: [1, 0],
-        lines: |[n, _]| moss(n),
+        what: "Knit and purl by turns both ways (seed)",
+        numbers: &[],
+        first: [1, 1],
+        chart: |_| Ok(moss()),
     },
     Alternation {
         name: "Basket",
-        what: "Basketweave: blocks of knit and purl like a chequerboard",
+        what: "Basketweave: blocks of knit and purl like a chequerboard; 1 × 2 is double moss",
         numbers: &["stitches", "rows"],
         first: [4, 4],
-        lines: |[n, m]| basketweave(n, m),
+        chart: |[n, m]| basketweave(n, m),
     },
 ];
 
@@ -81,7 +82,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         for (kind, numbers) in ALTERNATIONS.iter().zip(&mut editor.panel.alternation.0) {
             let button = egui::Button::new(kind.name).min_size(egui::vec2(86.0, 0.0));
             if ui.add(button).on_hover_text(kind.what).clicked() {
-                chosen = Some((kind.lines)(*numbers));
+                chosen = (kind.chart)(*numbers).ok();
             }
             for (number, of) in numbers.iter_mut().zip(kind.numbers) {
                 let field = ui.add(egui::DragValue::new(number).range(1..=99).speed(0.05));
@@ -95,6 +96,6 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
     if let Some(chart) = chosen {
         let selected = &editor.selection().faces;
         let faces = (!selected.is_empty()).then(|| selected.iter().map(|f| f.0).collect());
-        editor.act(Command::SetChart { chart, rows: None, faces });
+        editor.act(Command::SetChart { chart: chart.lines(), rows: None, faces });
     }
 }
