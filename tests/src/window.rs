@@ -239,3 +239,13 @@ pub fn knitted() -> Project {
     let labelled = Command::Autolabel.apply(&swatch()).unwrap();
     Command::Tessellate { width_mm: Some(16.0) }.apply(&labelled).unwrap()
 }
+
+/// A window on a small fabric, seen from the front, and the stitches of its rows.
+pub fn fabric() -> (Window, Vec<Vec<u32>>) {
+    let mut window = Window::new(knitted());
+    window.press("Stitches");
+    window.press("Front");
+    let rows = window.editor().project().fabric().unwrap().stitches.rows();
+    let rows = rows.into_iter().map(|r| r.faces.into_iter().map(|f| f.0).collect()).collect();
+    (window, rows)
+}

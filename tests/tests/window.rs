@@ -132,7 +132,6 @@ fn painting_while_it_plays_keeps_it_playing() {
     window.press("Front");
     window.press("Row");
     window.press("Paint");
-    window.press("p · purl");
     let fabric = window.editor().project().fabric().unwrap().clone();
     let state = fabric.state();
     let row = fabric.stitches.rows()[2].faces.clone();

@@ -3,18 +3,9 @@
 use app::command::Command;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use tests::window::{Window, knitted, swatch};
+use tests::window::{Window, fabric, knitted, swatch};
 
 const NONE: Modifiers = Modifiers::NONE;
-
-fn fabric() -> (Window, Vec<Vec<u32>>) {
-    let mut window = Window::new(knitted());
-    window.press("Stitches");
-    window.press("Front");
-    let rows = window.editor().project().fabric().unwrap().stitches.rows();
-    let rows = rows.into_iter().map(|r| r.faces.into_iter().map(|f| f.0).collect()).collect();
-    (window, rows)
-}
 
 /// Writes into the text field that has the focus.
 fn write(window: &mut Window, text: &str) {
@@ -74,6 +65,19 @@ fn the_status_bar_names_what_is_under_the_pointer() {
     assert!(window.says("course, "));
     assert!(!window.says("P purl"), "which acts on stitches only");
     window.keep("status");
+}
+
+#[test]
+fn stages_change_under_the_pointer() {
+    let (mut window, rows) = fabric();
+    let last = rows.last().and_then(|r| r.last()).copied().unwrap_or(0);
+    window.harness.hover_at(window.at_stitch(last, None));
+    for (key, says) in
+        [(Key::Num2, "edge "), (Key::Num4, "stitch "), (Key::Num1, "edge "), (Key::Num3, "stitch ")]
+    {
+        window.key(Modifiers::COMMAND, key);
+        assert!(window.says(says), "the pointer is over a part of what is shown now: {says}");
+    }
 }
 
 #[test]

@@ -1,21 +1,14 @@
 //! Cables, colours, regions, edge counts and relaxing, in the window.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, which clippy cannot see")]
+
 use app::command::Command;
 use egui::{Key, Modifiers};
 use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::FaceId;
-use tests::window::{Window, knitted, swatch};
+use tests::window::{Window, fabric, swatch};
 
 const NONE: Modifiers = Modifiers::NONE;
-
-fn fabric() -> (Window, Vec<Vec<u32>>) {
-    let mut window = Window::new(knitted());
-    window.press("Stitches");
-    window.press("Front");
-    let rows = window.editor().project().fabric().unwrap().stitches.rows();
-    let rows = rows.into_iter().map(|r| r.faces.into_iter().map(|f| f.0).collect()).collect();
-    (window, rows)
-}
 
 #[test]
 fn a_cable_crosses_left_then_right_then_not() {

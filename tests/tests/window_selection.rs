@@ -4,19 +4,9 @@ use app::command::Command;
 use egui::{Key, Modifiers};
 use std::collections::BTreeSet;
 use stitch_mesh::ids::FaceId;
-use tests::window::{Window, knitted, swatch};
+use tests::window::{Window, fabric, swatch};
 
 const NONE: Modifiers = Modifiers::NONE;
-
-/// A window on a small fabric, seen from the front, and its rows.
-fn fabric() -> (Window, Vec<Vec<u32>>) {
-    let mut window = Window::new(knitted());
-    window.press("Stitches");
-    window.press("Front");
-    let rows = window.editor().project().fabric().unwrap().stitches.rows();
-    let rows = rows.into_iter().map(|r| r.faces.into_iter().map(|f| f.0).collect()).collect();
-    (window, rows)
-}
 
 fn sorted(faces: impl IntoIterator<Item = u32>) -> Vec<u32> {
     faces.into_iter().collect::<BTreeSet<_>>().into_iter().collect()

@@ -53,6 +53,8 @@ pub struct Editor {
     /// What the marks on the screen were made for; none where they are out of date.
     pub(super) marked: Option<Option<HalfEdgeId>>,
     pub(super) snapshot: Option<Arc<Snapshot>>,
+    /// Whether the snapshot is not on the screen yet.
+    is_new: bool,
     shown: Option<(u64, Stage)>,
     /// The net that the simulation has, how often it had been placed, and material and scene.
     loaded: Option<Arc<YarnNet>>,
@@ -101,6 +103,7 @@ impl Editor {
             under: None,
             marked: None,
             snapshot: None,
+            is_new: false,
             shown: None,
             loaded: None,
             placed: 0,
@@ -119,6 +122,8 @@ impl Editor {
         panels::status::show(self, ui);
         panels::left::show(self, ui);
         panels::right::show(self, ui);
+        // Keys and buttons may have gone to another stage: the pointer has to find the faces of that one.
+        self.show_news();
         super::viewport::show(self, ui);
         super::search::show(self, ui.ctx());
         if self.session.is_busy() {
@@ -218,7 +223,13 @@ impl Editor {
         if is_new {
             self.playing = self.playing && snapshot.as_ref().is_none_or(|s| s.error.is_none());
             self.snapshot = snapshot;
+            self.is_new = true;
         }
+    }
+
+    /// Puts on the screen what is not there yet.
+    fn show_news(&mut self) {
+        let is_new = std::mem::take(&mut self.is_new);
         if self.shown != Some((self.view.revision, self.stage)) {
             self.shown = Some((self.view.revision, self.stage));
             self.show_stage();

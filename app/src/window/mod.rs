@@ -6,6 +6,7 @@ mod clipboard;
 pub mod editor;
 mod meant;
 mod navigation;
+mod numbers;
 mod panels;
 mod picture;
 mod pointer;

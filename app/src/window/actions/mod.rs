@@ -119,14 +119,23 @@ pub fn named(name: &str) -> Option<&'static Action> {
 
 /// A button for an action.
 pub fn button(editor: &mut Editor, ui: &mut Ui, name: &str) {
-    button_as(editor, ui, name, name, false);
+    button_as(editor, ui, name, name);
 }
 
-/// A button for an action with another text on it, marked where it is what holds now.
-pub fn button_as(editor: &mut Editor, ui: &mut Ui, name: &str, text: &str, marked: bool) {
+/// A button for an action with another text on it.
+pub fn button_as(editor: &mut Editor, ui: &mut Ui, name: &str, text: &str) {
+    show(editor, ui, name, egui::Button::new(text));
+}
+
+/// A button for an action that is one of several choices, marked where it is what holds now.
+pub fn choice(editor: &mut Editor, ui: &mut Ui, name: &str, marked: bool) {
+    show(editor, ui, name, egui::Button::selectable(marked, name));
+}
+
+fn show(editor: &mut Editor, ui: &mut Ui, name: &str, button: egui::Button<'_>) {
     let Some(action) = named(name) else { return };
     let blocked = action.blocked(editor);
-    let button = ui.add_enabled(blocked.is_none(), egui::Button::selectable(marked, text).frame(true));
+    let button = ui.add_enabled(blocked.is_none(), button);
     let tooltip = action.tooltip(ui.ctx());
     let why = blocked.map_or_else(String::new, |why| format!("{tooltip}\n\n{why}"));
     if button.on_hover_text(tooltip).on_disabled_hover_text(why).clicked() {

@@ -41,6 +41,6 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         let field = ui.color_edit_button_srgb(&mut editor.panel.dye.0);
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Another colour"));
         field.on_hover_text("Another colour");
-        button_as(editor, ui, "Dye", "Dye the selection", false);
+        button_as(editor, ui, "Dye", "Dye the selection");
     });
 }

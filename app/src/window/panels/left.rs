@@ -2,7 +2,7 @@
 
 use super::{colour, palette, patterns, tessellation, yarn};
 use crate::drawing::Stage;
-use crate::window::actions::{button, button_as};
+use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
 use crate::window::pointer::Tool;
 use crate::window::selection::Mode;
@@ -38,7 +38,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                     ],
                 };
                 for (name, tool) in tools {
-                    button_as(editor, ui, name, name, editor.tool == *tool);
+                    choice(editor, ui, name, editor.tool == *tool);
                 }
             });
             if editor.tool == Tool::Brush {
@@ -48,7 +48,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             }
             ui.horizontal(|ui| {
                 for (mode, name) in Mode::ALL {
-                    button_as(editor, ui, name, name, editor.selection().mode == mode);
+                    choice(editor, ui, name, editor.selection().mode == mode);
                 }
             });
             selected(editor, ui);
@@ -135,9 +135,9 @@ fn labels(editor: &mut Editor, ui: &mut Ui) {
     button(editor, ui, "Label automatically");
     ui.label("Selected edges");
     ui.horizontal(|ui| {
-        button_as(editor, ui, "Label course", "Course", false);
-        button_as(editor, ui, "Label wale", "Wale", false);
-        button_as(editor, ui, "Clear label", "None", false);
+        button_as(editor, ui, "Label course", "Course");
+        button_as(editor, ui, "Label wale", "Wale");
+        button_as(editor, ui, "Clear label", "None");
     });
     ui.horizontal(|ui| {
         button(editor, ui, "Fill row");

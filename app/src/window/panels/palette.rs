@@ -45,7 +45,7 @@ fn stitch(editor: &mut Editor, ui: &mut Ui, kind: &'static Kind) {
     let stroke =
         if chosen { egui::Stroke::new(2.5, ui.visuals().strong_text_color()) } else { egui::Stroke::NONE };
     let button =
-        egui::Button::new(text).fill(color(kind.symbol)).stroke(stroke).min_size(egui::vec2(44.0, 22.0));
+        egui::Button::new(text).fill(color(kind.symbol)).stroke(stroke).min_size(egui::vec2(36.0, 20.0));
     let response = ui.add(button);
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{} · {}", kind.symbol, kind.name()))

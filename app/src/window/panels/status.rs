@@ -65,7 +65,9 @@ fn under_pointer(editor: &Editor) -> Option<String> {
         };
         let border = if mesh.is_border(edge) { ", border" } else { "" };
         let length = 1e3 * mesh.edge_length(edge);
-        return Some(format!("edge {a}–{b}, {label}, {length:.1} mm{border}"));
+        let unit = if label == "wale" { "rows" } else { "stitches" };
+        let count = editor.count(edge).map_or_else(String::new, |n| format!(", {n} {unit}"));
+        return Some(format!("edge {a}–{b}, {label}{count}, {length:.1} mm{border}"));
     }
     let face = mesh.face(half);
     let (what, place) = match surface {

@@ -11,11 +11,7 @@ use stitch_mesh::ids::EdgeId;
 
 /// Shows it.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
-    ui.heading("Stitches");
-    if editor.project().labelled.check_complete().is_err() {
-        ui.label(RichText::new("Every face needs a row first").weak());
-        return;
-    }
+    ui.heading("Counts");
     ui.horizontal(|ui| {
         let label = ui.label("Stitch width");
         let width = egui::DragValue::new(&mut editor.panel.width_mm);
@@ -24,8 +20,12 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             editor.panel.width_changed = true;
         }
     });
-    selected_edges(editor, ui);
-    consequences(editor, ui);
+    if editor.project().labelled.check_complete().is_ok() {
+        selected_edges(editor, ui);
+        consequences(editor, ui);
+    } else {
+        ui.label(RichText::new("Every face needs a row first").weak());
+    }
     button(editor, ui, "Tessellate");
 }
 

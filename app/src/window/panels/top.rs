@@ -1,7 +1,7 @@
 //! Files, undo, stages, play, views, settings.
 
 use crate::drawing::Stage;
-use crate::window::actions::{button, button_as};
+use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
 use crate::window::navigation::Navigation;
 use crate::window::session::Request;
@@ -29,14 +29,14 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             }
             button(editor, ui, "Save");
             ui.separator();
-            button_as(editor, ui, "Undo", "⟲ Undo", false);
-            button_as(editor, ui, "Redo", "⟳ Redo", false);
+            button_as(editor, ui, "Undo", "⟲ Undo");
+            button_as(editor, ui, "Redo", "⟳ Redo");
             ui.separator();
             for (stage, name) in Stage::ALL.into_iter().zip(["Mesh", "Labels", "Stitches", "Yarn"]) {
-                button_as(editor, ui, name, name, editor.stage == stage);
+                choice(editor, ui, name, editor.stage == stage);
             }
             ui.separator();
-            button_as(editor, ui, "Play", if editor.playing { "⏸ Pause" } else { "▶ Play" }, false);
+            button_as(editor, ui, "Play", if editor.playing { "⏸ Pause" } else { "▶ Play" });
             ui.separator();
             for name in ["Front", "Back"] {
                 button(editor, ui, name);
@@ -56,7 +56,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             })
             .response
             .on_hover_text("How the mouse moves the view");
-            button_as(editor, ui, "Search commands", "🔍 Search", false);
+            button_as(editor, ui, "Search commands", "🔍 Search");
         });
     });
 }
