@@ -10,9 +10,9 @@ use stitch_mesh::unravel::loose_loops;
 
 /// How much denser than asked for the loops of an increase or decrease may be.
 ///
-/// Half a stitch of width is left of twice as many, and yarn as thick as the size asks for just fits; a shaping of one stitch in
-/// two (`kp` on every stitch of a row) still passes.
-const MOST_DENSITY: f64 = 2.0;
+/// Half a stitch of width is left of twice as many, and yarn as thick as the size asks for just fits: a shaping of one stitch in
+/// two (`kp` on every stitch of a row) passes, and so does the stitch by which counts may differ from lengths on short edges.
+const MOST_DENSITY: f64 = 2.5;
 
 /// The mesh to which a place belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -89,11 +89,11 @@ fn squeezed(stitches: &StitchMesh, size: StitchSize) -> impl Iterator<Item = Pro
         (MOST_DENSITY * room < size.width).then(|| {
             let what = match stitches.stitch(face) {
                 s if s.tops() > s.bottoms() => {
-                    "an increase without room: its loops are less than half as wide as the stitches asked for; spread the \
+                    "an increase without room: its loops are less than 40 % as wide as the stitches asked for; spread the \
                      increases over more rows, or ask for more stitches below"
                 }
                 _ => {
-                    "a decrease without room: the loops it works together are less than half as wide as the stitches asked \
+                    "a decrease without room: the loops it works together are less than 40 % as wide as the stitches asked \
                      for; begin to decrease further below, or ask for fewer stitches there"
                 }
             };

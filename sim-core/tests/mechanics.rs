@@ -141,7 +141,8 @@ fn bad_input_is_refused() {
     assert!(matches!(with_state(&|s| s.position.truncate(3)), Some(SimError::StateShape { .. })));
     assert!(matches!(with_state(&|s| s.sliding[5] = s.sliding[6]), Some(SimError::StateWithoutYarn(5))));
     let mut broken = (*net).clone();
-    broken.visits[5].u = broken.visits[6].u;
+    let same = broken.visits[6].u;
+    Arc::make_mut(&mut broken.visits)[5].u = same;
     let refused = Simulator::new(&Arc::new(broken), material.clone(), Scene::empty(), net.laid_state());
     assert!(matches!(refused.err(), Some(SimError::Net(_))));
 }

@@ -22,6 +22,7 @@ use crate::ids::{FaceId, HalfEdgeId, NodeId, VisitId, YarnId};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What happens at a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,7 +120,8 @@ pub struct YarnNet {
     /// Contact nodes.
     pub nodes: Vec<Node>,
     /// Visits, yarn by yarn, in order along each.
-    pub visits: Vec<Visit>,
+    /// Shared with the nets of edits that leave all yarns where they run.
+    pub visits: Arc<Vec<Visit>>,
     /// Yarns.
     pub yarns: Vec<Yarn>,
     /// Stitch contacts.

@@ -7,6 +7,7 @@ use crate::ids::{NodeId, VisitId, YarnId};
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::{Loop, NodeKind, TakenIn, Visit, Yarn, YarnNet};
 use smallvec::SmallVec;
+use std::sync::Arc;
 
 /// Length of a tail, in steps of [`Draft::outward`].
 const TAIL: f64 = 1.2;
@@ -21,7 +22,8 @@ pub fn trace(stitches: &StitchMesh, draft: Draft) -> YarnNet {
     let mut tracer = Tracer {
         crossed: vec![NONE; 2 * stitches.mesh().half_edge_count()],
         number: vec![NONE; draft.visits.len()],
-        net: YarnNet { visits: Vec::with_capacity(draft.visits.len() + 2), ..YarnNet::default() },
+        visits: Vec::with_capacity(draft.visits.len() + 2),
+        yarns: Vec::new(),
         dye: None,
         draft,
     };
@@ -44,7 +46,8 @@ pub fn trace(stitches: &StitchMesh, draft: Draft) -> YarnNet {
 
 struct Tracer {
     draft: Draft,
-    net: YarnNet,
+    visits: Vec<Visit>,
+    yarns: Vec<Yarn>,
     /// For every visit of the draft its number in the net.
     number: Vec<u32>,
     /// For every port of a half-edge how many visits there had been when the yarn crossed it.
@@ -56,7 +59,7 @@ struct Tracer {
 impl Tracer {
     /// Follows the yarn that enters a piece at `from` to its end, or round.
     fn follow(&mut self, piece_at: &PieceAt, from: Port, open: bool, used: &mut [bool]) {
-        let start = self.net.visits.len();
+        let start = self.visits.len();
         self.dye = None;
         let mut entry = from;
         while let Some(at) = piece_at.get(entry) {
@@ -83,7 +86,7 @@ impl Tracer {
 
     fn cross(&mut self, port: Port) {
         if let Some(crossed) = self.crossed.get_mut(port as usize) {
-            *crossed = self.net.visits.len() as u32;
+            *crossed = self.visits.len() as u32;
         }
     }
 
@@ -91,19 +94,19 @@ impl Tracer {
     /// turns back to the node it comes from (a segment without length).
     fn pass(&mut self, visit: u32, dye: Dye, start: usize, open: bool) {
         let node = self.draft.visits[visit as usize];
-        if self.net.visits.len() == start {
+        if self.visits.len() == start {
             if open {
                 self.free_node(node, TAIL, dye);
             }
-        } else if self.net.visits.last().is_some_and(|v| v.node == node) {
+        } else if self.visits.last().is_some_and(|v| v.node == node) {
             self.free_node(node, 1.0, dye);
         }
-        self.number[visit as usize] = self.net.visits.len() as u32;
+        self.number[visit as usize] = self.visits.len() as u32;
         self.push(node, dye);
     }
 
     fn push(&mut self, node: NodeId, dye: Dye) {
-        self.net.visits.push(Visit { node, yarn: YarnId::new(self.net.yarns.len()), u: 0.0, dye });
+        self.visits.push(Visit { node, yarn: YarnId::new(self.yarns.len()), u: 0.0, dye });
     }
 
     /// Adds a node with one visit, outwards of `beside`.
@@ -115,14 +118,12 @@ impl Tracer {
         let visit = self.draft.visits.len() as u32;
         self.draft.visits.push(node);
         self.draft.nodes[node.index()].visits.push(VisitId(visit));
-        self.number.push(self.net.visits.len() as u32);
+        self.number.push(self.visits.len() as u32);
         self.push(node, dye);
     }
 
     fn end_yarn(&mut self, start: usize, open: bool) {
-        let (Some(first), Some(last)) =
-            (self.net.visits.get(start).copied(), self.net.visits.last().copied())
-        else {
+        let (Some(first), Some(last)) = (self.visits.get(start).copied(), self.visits.last().copied()) else {
             return;
         };
         if open {
@@ -133,20 +134,19 @@ impl Tracer {
         let mut u = 0.0;
         let position = |v: &Visit| self.draft.nodes[v.node.index()].position;
         let mut before = position(&first);
-        for visit in &mut self.net.visits[start..] {
+        for visit in &mut self.visits[start..] {
             let here = position(visit);
             u += before.distance(here);
             visit.u = u;
             before = here;
         }
-        self.net.yarns.push(Yarn {
-            visits: start as u32..self.net.visits.len() as u32,
+        self.yarns.push(Yarn {
+            visits: start as u32..self.visits.len() as u32,
             period: (!open).then_some(u + before.distance(position(&first))),
         });
     }
 
     fn finish(mut self, stitches: &StitchMesh) -> YarnNet {
-        let mut net = self.net;
         let number = &self.number;
         let renumber = |v: &mut VisitId| v.0 = number[v.index()];
         for node in &mut self.draft.nodes {
@@ -156,18 +156,17 @@ impl Tracer {
             contact.new.iter_mut().for_each(renumber);
             contact.old.iter_mut().flatten().for_each(renumber);
         }
-        net.nodes = self.draft.nodes;
-        net.contacts = self.draft.contacts;
         // A segment begins at whichever of its ends the yarn meets first.
         let segment = |v: u32| VisitId(number[v as usize].min(number[v as usize + 1]));
-        net.taken_in = self
-            .draft
-            .take_in
-            .iter()
-            .map(|(v, length)| TakenIn { segment: segment(*v), length: *length })
-            .collect();
-        net.loops = loops(stitches, &self.crossed);
-        net
+        let taken_in = self.draft.take_in.iter();
+        YarnNet {
+            taken_in: taken_in.map(|(v, length)| TakenIn { segment: segment(*v), length: *length }).collect(),
+            loops: loops(stitches, &self.crossed),
+            nodes: self.draft.nodes,
+            contacts: self.draft.contacts,
+            visits: Arc::new(self.visits),
+            yarns: self.yarns,
+        }
     }
 }
 
