@@ -47,7 +47,7 @@ fn selected_edges(editor: &mut Editor, ui: &mut Ui) {
     let mesh = project.labelled.mesh();
     let ends: Vec<[u32; 2]> = edges.iter().map(|e| mesh.edge_ends(*e).map(|v| v.0)).collect();
     let mut wanted = now;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let label = ui.label(if is_wale { "Rows" } else { "On each edge" });
         if ui.add_enabled(now > 1, egui::Button::new("−")).on_hover_text("One fewer").clicked() {
             wanted = now - 1;
@@ -63,7 +63,7 @@ fn selected_edges(editor: &mut Editor, ui: &mut Ui) {
             wanted = now + 1;
         }
         if !same {
-            ui.label(RichText::new("mixed").weak());
+            ui.label(RichText::new("not the same everywhere now").weak());
         }
     });
     if wanted != now {
