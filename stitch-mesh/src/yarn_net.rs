@@ -126,7 +126,7 @@ pub struct YarnNet {
     pub yarns: Vec<Yarn>,
     /// Stitch contacts.
     pub contacts: Vec<StitchContact>,
-    /// The loops on all top edges, except where tops meet tops.
+    /// The loops on all top edges, except where tops meet tops, or hand on what comes from there.
     pub loops: Vec<Loop>,
     /// Segments that are taken in.
     pub taken_in: Vec<TakenIn>,

@@ -12,6 +12,9 @@ use std::sync::Arc;
 /// Length of a tail, in steps of [`Draft::outward`].
 const TAIL: f64 = 1.2;
 
+/// The least yarn of a segment [m]: edits can fold faces so that nodes of two of them lie in one place.
+const SHORTEST: f64 = 1e-5;
+
 /// Not visited by any yarn.
 const NONE: u32 = u32::MAX;
 
@@ -20,7 +23,7 @@ pub fn trace(stitches: &StitchMesh, draft: Draft) -> YarnNet {
     let piece_at = PieceAt::of(&draft);
     let mut used = vec![false; draft.pieces.len()];
     let mut tracer = Tracer {
-        crossed: vec![NONE; 2 * stitches.mesh().half_edge_count()],
+        crossed: vec![None; 2 * stitches.mesh().half_edge_count()],
         number: vec![NONE; draft.visits.len()],
         visits: Vec::with_capacity(draft.visits.len() + 2),
         yarns: Vec::new(),
@@ -44,14 +47,23 @@ pub fn trace(stitches: &StitchMesh, draft: Draft) -> YarnNet {
     tracer.finish(stitches)
 }
 
+/// How yarn crosses an edge.
+#[derive(Clone, Copy)]
+struct Crossed {
+    /// How many visits there had been before.
+    visits: u32,
+    /// Whether it left the face of the half-edge, or came into it.
+    outwards: bool,
+}
+
 struct Tracer {
     draft: Draft,
     visits: Vec<Visit>,
     yarns: Vec<Yarn>,
     /// For every visit of the draft its number in the net.
     number: Vec<u32>,
-    /// For every port of a half-edge how many visits there had been when the yarn crossed it.
-    crossed: Vec<u32>,
+    /// For every port of a half-edge how the yarn crossed it.
+    crossed: Vec<Option<Crossed>>,
     /// The colour that goes on.
     dye: Option<Dye>,
 }
@@ -69,13 +81,13 @@ impl Tracer {
             if own {
                 self.dye = Some(dye);
             }
-            self.cross(entry);
+            self.cross(entry, false);
             for i in 0..last - first {
                 let visit = if forward { first + i } else { last - 1 - i };
                 self.pass(visit, self.dye.unwrap_or(dye), start, open);
             }
             let exit = if forward { end } else { begin };
-            self.cross(exit);
+            self.cross(exit, true);
             match self.draft.other_side(exit) {
                 Some(next) if next != from => entry = next,
                 _ => break,
@@ -84,9 +96,9 @@ impl Tracer {
         self.end_yarn(start, open);
     }
 
-    fn cross(&mut self, port: Port) {
+    fn cross(&mut self, port: Port, outwards: bool) {
         if let Some(crossed) = self.crossed.get_mut(port as usize) {
-            *crossed = self.visits.len() as u32;
+            *crossed = Some(Crossed { visits: self.visits.len() as u32, outwards });
         }
     }
 
@@ -134,15 +146,15 @@ impl Tracer {
         let mut u = 0.0;
         let position = |v: &Visit| self.draft.nodes[v.node.index()].position;
         let mut before = position(&first);
-        for visit in &mut self.visits[start..] {
+        for (i, visit) in self.visits[start..].iter_mut().enumerate() {
             let here = position(visit);
-            u += before.distance(here);
+            u += if i == 0 { 0.0 } else { before.distance(here).max(SHORTEST) };
             visit.u = u;
             before = here;
         }
         self.yarns.push(Yarn {
             visits: start as u32..self.visits.len() as u32,
-            period: (!open).then_some(u + before.distance(position(&first))),
+            period: (!open).then_some(u + before.distance(position(&first)).max(SHORTEST)),
         });
     }
 
@@ -170,15 +182,21 @@ impl Tracer {
     }
 }
 
-/// The loops of all stitches that go up into a stitch or a border.
-fn loops(stitches: &StitchMesh, crossed: &[u32]) -> Vec<Loop> {
+/// The loops of all stitches that go up into a stitch or a border, and come back. Others go up only: handed on from below by
+/// stitches whose rows run the other way.
+fn loops(stitches: &StitchMesh, crossed: &[Option<Crossed>]) -> Vec<Loop> {
     let mesh = stitches.mesh();
     let mut loops = Vec::with_capacity(stitches.loop_count());
     for face in mesh.faces() {
         let ends: SmallVec<[_; 4]> = stitches.tops(face).collect();
         for top in ends.into_iter().filter(|h| mesh.twin(*h).is_none_or(|t| stitches.is_bottom(t))) {
             let [left, right] = [1, 0].map(|place| crossed[course_port(top, place) as usize]);
-            loops.push(Loop { top, head: left.min(right)..left.max(right) });
+            let (Some(left), Some(right)) = (left, right) else { continue };
+            let (up, down) = if left.visits <= right.visits { (left, right) } else { (right, left) };
+            // A loop that passes nothing at all is held by nothing, whichever way its yarn runs.
+            if up.visits == down.visits || up.outwards && !down.outwards {
+                loops.push(Loop { top, head: up.visits..down.visits });
+            }
         }
     }
     loops
