@@ -216,36 +216,7 @@ fn check_yarn(fabric: &Fabric) {
         fabric.stitches.mesh().twin(last).is_some_and(|t| !fabric.stitches.is_bottom(t))
     };
     let loose: Vec<_> = loose.iter().filter(|top| !meets_tops(top)).collect();
-    let story: Vec<_> = loose
-        .iter()
-        .map(|top| {
-            let m = fabric.stitches.mesh();
-            let l = net.loops.iter().find(|l| l.top == **top).unwrap();
-            let head: Vec<_> = l
-                .head
-                .clone()
-                .map(|v| {
-                    let n = &net.nodes[net.visits[v as usize].node.index()];
-                    (n.kind, n.face.map(|f| f.0))
-                })
-                .collect();
-            let last = handed_on_to(&fabric.stitches, **top);
-            (
-                m.face(**top),
-                m.face_across(**top).map(|f| fabric.stitches.stitch(f).to_string()),
-                head,
-                m.face(last),
-                m.twin(last).map(|t| fabric.stitches.is_bottom(t)),
-                fabric.stitches.is_live(last),
-            )
-        })
-        .collect();
-    assert!(
-        loose.is_empty(),
-        "loops that nothing holds: {story:?} spiral {} cables {:?}",
-        fabric.stitches.marks().spiral,
-        fabric.stitches.cables()
-    );
+    assert!(loose.is_empty(), "loops that nothing holds: {loose:?}");
     for (v, visit) in net.visits.iter().enumerate() {
         let stack = &net.nodes[visit.node.index()].visits;
         assert_eq!(stack.iter().filter(|s| s.index() == v).count(), 1);
