@@ -35,6 +35,8 @@ pub fn row(index: usize) -> [f32; 3] {
 /// Knit is a calm light sand, purl a clear blue, a yarn-over nearly white like the hole it makes. Decreases lean to red
 /// and increases to green, deeper when more stitches meet, bluer when they are purled.
 pub fn stitch(symbol: &str, row: usize) -> [f32; 3] {
+    // What begins from nothing is no decrease.
+    let symbol = symbol.strip_prefix("d0").unwrap_or(symbol);
     let actions = || symbol.chars().filter(|c| matches!(c, 'k' | 'p' | 'y'));
     let purled = actions().next() == Some('p');
     let color = if let Some(order) = symbol.strip_prefix('d') {
