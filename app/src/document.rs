@@ -2,6 +2,7 @@
 
 use crate::command::Command;
 use crate::project::Project;
+use crate::relax::unwatched;
 use anyhow::Result;
 use sim_core::Facts;
 use std::collections::HashSet;
@@ -53,7 +54,7 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<()> {
-        let done = command.perform(&self.project)?;
+        let done = command.perform(&self.project, &mut unwatched)?;
         self.keep(command, done, false);
         Ok(())
     }
@@ -64,7 +65,7 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn amend(&mut self, command: Command) -> Result<()> {
-        let done = command.perform(&self.project)?;
+        let done = command.perform(&self.project, &mut unwatched)?;
         self.keep(command, done, true);
         Ok(())
     }

@@ -5,9 +5,11 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use render::{Drawing, Faces, Lines, Polygon, Segment, Solid, Solids, palette};
 use sim_core::{Body, Scene, curves};
+use std::collections::HashMap;
 use stitch_mesh::ids::{EdgeId, FaceId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
 use stitch_mesh::mesh::PolygonMesh;
+use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
 
 /// What to show of a project.
@@ -129,19 +131,30 @@ fn label_drawing(labelled: &LabelledMesh, shown: Shown<'_>) -> Drawing {
     Drawing { faces: faces(mesh, shown, color), lines: Lines { segments }, ..Drawing::default() }
 }
 
+/// Colours of the faces of a stitch mesh, [face_count]: by kind, odd rows darker.
+pub fn stitch_colors(stitches: &StitchMesh) -> Vec<[f32; 3]> {
+    let mut is_odd = vec![false; stitches.mesh().face_count()];
+    for row in stitches.rows().iter().skip(1).step_by(2) {
+        row.faces.iter().for_each(|f| is_odd[f.index()] = true);
+    }
+    // A fabric has few kinds of stitches, so their colours are looked up once each.
+    let mut known: HashMap<&Stitch, [[f32; 3]; 2]> = HashMap::new();
+    let both = |stitch: &Stitch| [0, 1].map(|row| palette::stitch(&stitch.to_string(), row));
+    let colors = stitches.stitches().iter().zip(is_odd);
+    colors
+        .map(|(stitch, odd)| known.entry(stitch).or_insert_with(|| both(stitch))[usize::from(odd)])
+        .collect()
+}
+
 fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
     let mesh = stitches.mesh();
-    let mut row_of = vec![0; mesh.face_count()];
-    for (r, row) in stitches.rows().iter().enumerate() {
-        row.faces.iter().for_each(|f| row_of[f.index()] = r);
-    }
-    let symbols: Vec<String> = stitches.stitches().iter().map(ToString::to_string).collect();
+    let colors = stitch_colors(stitches);
     let lines = shown_edges(mesh, shown).map(|e| {
         let wale = stitches.is_wale(mesh.edge_sides(e).0);
         edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })
     });
     Drawing {
-        faces: faces(mesh, shown, |f| palette::stitch(&symbols[f], row_of[f])),
+        faces: faces(mesh, shown, |f| colors[f]),
         lines: Lines { segments: lines.collect() },
         ..Drawing::default()
     }

@@ -9,6 +9,14 @@ use sim_core::mesh_relax::{MeshRelaxation, RelaxEnd, RelaxParams, RestLengths, S
 use std::ops::ControlFlow;
 use stitch_mesh::stitch_mesh::StitchMesh;
 
+/// Sees stitches after every step of their relaxation, and may break off.
+pub type Watch<'a> = &'a mut dyn FnMut(&MeshRelaxation, &StepFacts) -> ControlFlow<()>;
+
+/// Watches nothing.
+pub(crate) fn unwatched(_: &MeshRelaxation, _: &StepFacts) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
 /// The project with its stitch mesh relaxed, on the smooth surface of the input mesh or freely in space. `watch` is called
 /// after every step and may break off.
 ///
@@ -18,7 +26,7 @@ pub fn relax_mesh(
     project: &Project,
     params: RelaxParams,
     surface: bool,
-    watch: &mut dyn FnMut(&MeshRelaxation, &StepFacts) -> ControlFlow<()>,
+    watch: Watch<'_>,
 ) -> Result<Project> {
     let before = &project.fabric()?.stitches;
     let input = surface.then(|| project.labelled.mesh());
@@ -56,6 +64,9 @@ pub struct MeshStrain {
     pub rms: f64,
     /// The faces furthest from rest.
     pub worst: Vec<FaceStrain>,
+    /// All of them, [face_count].
+    #[serde(skip)]
+    pub faces: Vec<f32>,
 }
 
 /// One of them.
@@ -79,5 +90,6 @@ pub fn mesh_strain(stitches: &StitchMesh, aspect: f64) -> Option<MeshStrain> {
         strain.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(*s), h.max(*s)));
     let rms = (strain.iter().map(|s| s * s).sum::<f64>() / strain.len() as f64).sqrt();
     let worst = worst(&strain, NAMED).into_iter().map(|(face, strain)| FaceStrain { face: face.0, strain });
-    Some(MeshStrain { min, max, rms, worst: worst.collect() })
+    let faces = strain.iter().map(|s| *s as f32).collect();
+    Some(MeshStrain { min, max, rms, worst: worst.collect(), faces })
 }

@@ -31,7 +31,7 @@ impl Compose {
             vertex: "cover",
             fragment: Some("compose"),
             layouts: &[&layout],
-            vertices: None,
+            vertices: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: None,
             target: Some(PICTURE_FORMAT),

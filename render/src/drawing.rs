@@ -29,19 +29,49 @@ impl Faces {
         self.polygons[polygon].vertices.iter().map(|&v| self.positions[v as usize])
     }
 
-    /// The triangles of a polygon: itself if it is one, otherwise a fan about the mean of its corners, which treats all
-    /// corners of a warped polygon alike.
-    pub(crate) fn triangles(&self, polygon: usize) -> impl Iterator<Item = [Vec3; 3]> + '_ {
-        let vertices = &self.polygons[polygon].vertices;
-        let n = vertices.len();
-        let at = move |i: usize| self.positions[vertices[i % n] as usize];
-        let mean = self.corners(polygon).sum::<Vec3>() / n.max(1) as f32;
+    /// A polygon cut into triangles, each three of its corners; their number stands for the mean of them. A quadrilateral is
+    /// cut along the shorter diagonal inside it; larger ones are a fan about the mean, which treats all corners of a warped
+    /// polygon alike.
+    pub(crate) fn cut(&self, polygon: usize) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let n = self.polygons[polygon].vertices.len();
+        let other = n == 4 && self.is_cut_from_second(polygon);
         let count = match n {
             0..3 => 0,
-            3 => 1,
+            3 | 4 => n - 2,
             _ => n,
         };
-        (0..count).map(move |i| if n == 3 { [at(0), at(1), at(2)] } else { [mean, at(i), at(i + 1)] })
+        (0..count).map(move |i| match n {
+            3 | 4 => [0, i + 1, i + 2].map(|corner| (corner + usize::from(other)) % n),
+            _ => [n, i, (i + 1) % n],
+        })
+    }
+
+    /// Whether a quadrilateral is cut from its second to its last corner.
+    fn is_cut_from_second(&self, polygon: usize) -> bool {
+        let vertices = &self.polygons[polygon].vertices;
+        let at = |i: usize| self.positions[vertices[i % 4] as usize];
+        let half = |i: usize| (at(i + 1) - at(i)).cross(at(i + 2) - at(i));
+        let whole = half(0) + half(2);
+        let inside = |i: usize| half(i).dot(whole) >= 0.0 && half(i + 2).dot(whole) >= 0.0;
+        match (inside(0), inside(1)) {
+            (true, true) => at(1).distance_squared(at(3)) < at(0).distance_squared(at(2)),
+            (first, _) => !first,
+        }
+    }
+
+    /// The triangles of a polygon.
+    pub(crate) fn triangles(&self, polygon: usize) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        let vertices = &self.polygons[polygon].vertices;
+        let at = move |i: usize| match vertices.get(i) {
+            Some(vertex) => self.positions[*vertex as usize],
+            None => self.mean(polygon),
+        };
+        self.cut(polygon).map(move |corners| corners.map(at))
+    }
+
+    /// The mean of the corners of a polygon [m].
+    pub(crate) fn mean(&self, polygon: usize) -> Vec3 {
+        self.corners(polygon).sum::<Vec3>() / self.polygons[polygon].vertices.len().max(1) as f32
     }
 }
 
@@ -109,6 +139,18 @@ mod tests {
             })
             .sum();
         assert!((faces.triangles(0).map(double_area).sum::<f32>() - shoelace).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_quadrilateral_is_cut_inside() {
+        let dart = [(0.0, 0.0), (2.0, 2.0), (0.0, 0.5), (-2.0, 2.0)];
+        for turn in 0..4 {
+            let positions = (0..4).map(|i| dart[(i + turn) % 4]).map(|(x, y)| Vec3::new(x, y, 0.0)).collect();
+            let faces =
+                Faces { positions, polygons: vec![Polygon { vertices: (0..4).collect(), color: [1.0; 3] }] };
+            let areas: Vec<f32> = faces.triangles(0).map(|[a, b, c]| (b - a).cross(c - a).z).collect();
+            assert!(areas.len() == 2 && areas.iter().all(|a| *a > 0.0), "{turn}: {areas:?}");
+        }
     }
 
     #[test]

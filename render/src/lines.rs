@@ -10,6 +10,9 @@ use crate::{Gpu, RenderError};
 const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
 
+/// Lines shorter than so many of their widths on the screen, in the mean, are left out.
+const ROOM: f32 = 3.0;
+
 /// A segment as the GPU reads it, one instance of a quad.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -24,18 +27,32 @@ struct Instance {
 pub(crate) struct LineMesh {
     instances: GrowingBuffer,
     count: u32,
+    /// Mean length [m] and width [px].
+    mean: [f32; 2],
 }
 
 impl LineMesh {
     pub fn new() -> Self {
-        Self { instances: GrowingBuffer::new("lines", wgpu::BufferUsages::VERTEX), count: 0 }
+        Self { instances: GrowingBuffer::new("lines", wgpu::BufferUsages::VERTEX), count: 0, mean: [0.0; 2] }
     }
 
     pub fn set(&mut self, gpu: &Gpu, lines: &Lines) -> Result<(), RenderError> {
         let instance = |s: &crate::Segment| Instance { ends: s.ends, color: s.color, width: s.width };
         let instances: Vec<_> = lines.segments.iter().map(instance).collect();
         self.count = instances.len() as u32;
+        let sum = |of: fn(&crate::Segment) -> f32| lines.segments.iter().map(of).sum::<f32>();
+        let sums = [sum(|s| s.ends[0].distance(s.ends[1])), sum(|s| s.width)];
+        self.mean = sums.map(|sum| sum / instances.len().max(1) as f32);
         self.instances.write(gpu, bytemuck::cast_slice(&instances), gpu.device.limits().max_buffer_size)
+    }
+}
+
+impl LineMesh {
+    /// Whether there is room between the lines where a metre is `scale` pixels. Where there is none they would cover what they
+    /// outline, and cost more than it does.
+    fn has_room(&self, scale: f32) -> bool {
+        let [length, width] = self.mean;
+        length * scale > ROOM * width
     }
 }
 
@@ -51,11 +68,11 @@ impl LinePipeline {
             vertex: "line_vertex",
             fragment: Some("line_fragment"),
             layouts: &[frame],
-            vertices: Some(wgpu::VertexBufferLayout {
+            vertices: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<Instance>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes: &ATTRIBUTES,
-            }),
+            })],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             cull: None,
             target: Some(COLOR_FORMAT),
@@ -65,6 +82,14 @@ impl LinePipeline {
         Self(pipeline.build(device))
     }
 
+    /// Draws lines if there is room between them where a metre is `scale` pixels.
+    pub fn draw_outlines(&self, pass: &mut wgpu::RenderPass, mesh: &LineMesh, scale: f32) {
+        if mesh.has_room(scale) {
+            self.draw(pass, mesh);
+        }
+    }
+
+    /// Draws lines.
     pub fn draw(&self, pass: &mut wgpu::RenderPass, mesh: &LineMesh) {
         if let Some(buffer) = mesh.instances.buffer().filter(|_| mesh.count > 0) {
             pass.set_pipeline(&self.0);

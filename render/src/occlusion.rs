@@ -44,7 +44,7 @@ impl Occlusion {
                 vertex: "cover",
                 fragment: Some(fragment),
                 layouts,
-                vertices: None,
+                vertices: &[],
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,
                 target: Some(FORMAT),

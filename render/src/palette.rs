@@ -63,6 +63,19 @@ pub fn stitch(symbol: &str, row: usize) -> [f32; 3] {
     hex(color).map(|channel| channel * shade)
 }
 
+/// Strain at which the colours of [`strain`] end: stitches a third wider or narrower than the others show at a glance.
+pub const MOST_STRAIN: f32 = 0.3;
+
+/// Colour of a face by its strain: blue where it is pressed, red where it is stretched, nearly white where it is even. The
+/// colours are told apart by every kind of colour vision (Brewer's RdBu).
+pub fn strain(strain: f32) -> [f32; 3] {
+    const STEPS: [u32; 7] = [0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b];
+    let place = (strain / MOST_STRAIN).clamp(-1.0, 1.0) * 3.0 + 3.0;
+    let step = (place as usize).min(STEPS.len() - 2);
+    let [low, high] = [0, 1].map(|i| hex(STEPS[step + i]));
+    [0, 1, 2].map(|i| low[i] + (high[i] - low[i]) * (place - step as f32))
+}
+
 /// Linear RGB of a colour as written on the web. A `const` function, so it inverts the sRGB curve by the polynomial that
 /// is within 0.004 of it.
 const fn hex(rgb: u32) -> [f32; 3] {
@@ -94,6 +107,15 @@ mod tests {
     #[test]
     fn neighbouring_rows_differ() {
         assert!((0..14).all(|i| distance(row(i), row(i + 1)) > 0.25));
+    }
+
+    #[test]
+    fn strain_goes_from_blue_over_white_to_red() {
+        let [pressed, even, stretched] = [-MOST_STRAIN, 0.0, MOST_STRAIN].map(strain);
+        assert!(pressed[2] > 2.0 * pressed[0] && stretched[0] > 2.0 * stretched[2]);
+        assert!(even.iter().all(|c| *c > 0.85));
+        assert_eq!(strain(5.0), stretched);
+        assert!(distance(strain(0.1), even) > 0.1 && distance(strain(-0.1), even) > 0.1);
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub struct Hit {
     pub edge: usize,
 }
 
-/// The first polygon that a ray meets, from either side. Polygons are the same fans of triangles that are drawn.
+/// The first polygon that a ray meets, from either side. Polygons are the same triangles that are drawn.
 pub fn pick(faces: &Faces, ray: Ray) -> Option<Hit> {
     // Most polygons are far off the ray. A point is within reach of the ray's line if it is nearer to it than to the
     // farthest corner, which is far cheaper than triangles.
@@ -44,6 +44,10 @@ pub fn pick(faces: &Faces, ray: Ray) -> Option<Hit> {
     })
 }
 
+/// How far beyond its sides a triangle is still met, as a part of them: rays along the side of two triangles, as through the
+/// middle of a quadrilateral, shall not pass between them.
+pub(crate) const SEAM: f32 = 1e-5;
+
 /// Distance along a ray to a triangle (Möller and Trumbore), from either side.
 fn intersect(ray: Ray, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (ab, ac, ao) = (b - a, c - a, ray.origin - a);
@@ -56,7 +60,7 @@ fn intersect(ray: Ray, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let q = ao.cross(ab);
     let v = ray.direction.dot(q) / determinant;
     let distance = ac.dot(q) / determinant;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
+    (u.min(v).min(1.0 - u - v) >= -SEAM && distance > 0.0).then_some(distance)
 }
 
 fn nearest_edge(faces: &Faces, polygon: usize, position: Vec3) -> usize {

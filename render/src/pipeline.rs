@@ -23,7 +23,7 @@ pub(crate) struct Pipeline<'a> {
     pub vertex: &'a str,
     pub fragment: Option<&'a str>,
     pub layouts: &'a [&'a wgpu::BindGroupLayout],
-    pub vertices: Option<wgpu::VertexBufferLayout<'a>>,
+    pub vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub topology: wgpu::PrimitiveTopology,
     pub cull: Option<wgpu::Face>,
     /// Format of the colour target; `None` draws depth only.
@@ -53,7 +53,7 @@ impl Pipeline<'_> {
                 module: self.module,
                 entry_point: Some(self.vertex),
                 compilation_options: Default::default(),
-                buffers: self.vertices.as_ref().map_or(&[], |_| std::slice::from_ref(&self.vertices)),
+                buffers: self.vertices,
             },
             primitive: wgpu::PrimitiveState {
                 topology: self.topology,

@@ -109,7 +109,8 @@ impl Renderer {
         self.surfaces.draw_faces(&mut pass, &scene.faces);
         self.surfaces.draw_solids(&mut pass, &scene.solids);
         pass.set_bind_group(0, &viewport.plain_frame, &[]);
-        self.lines.draw(&mut pass, &scene.lines);
+        let scale = camera.pixels_per_radian(size.y) / camera.distance / self.supersampling as f32;
+        self.lines.draw_outlines(&mut pass, &scene.lines, scale);
         self.lines.draw(&mut pass, &scene.marks);
         drop(pass);
 

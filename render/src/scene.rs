@@ -55,6 +55,11 @@ impl Scene {
         self.faces.set_faces(gpu, faces)
     }
 
+    /// Shows `faces`, which were set before, in other colours, [polygon_count].
+    pub fn set_colors(&mut self, gpu: &Gpu, faces: &Faces, colors: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.faces.set_colors(gpu, faces, colors)
+    }
+
     /// Replaces the lines.
     pub fn set_lines(&mut self, gpu: &Gpu, lines: &Lines) -> Result<(), RenderError> {
         self.lines.set(gpu, lines)

@@ -48,9 +48,8 @@ pub struct Solids {
     pub solids: Vec<Solid>,
 }
 
-/// A corner of a triangle as the GPU reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex {
     pub position: Vec3,
     pub normal: Vec3,

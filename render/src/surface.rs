@@ -1,51 +1,85 @@
 //! Triangles in flat colours: polygons of meshes, and bodies.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use wgpu::CompareFunction::{Greater, Less};
 
-use crate::drawing::Faces;
+use crate::drawing::{Faces, Polygon};
 use crate::light;
 use crate::pipeline::{COLOR_FORMAT, Pipeline, shader};
 use crate::scene::GrowingBuffer;
-use crate::solids::{Solids, Vertex};
+use crate::solids::Solids;
 use crate::{Gpu, RenderError};
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
+const SHAPE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+const COLOR: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Float32x4];
 
 /// Triangles on the GPU.
 #[derive(Debug)]
 pub(crate) struct SurfaceMesh {
-    vertices: GrowingBuffer,
+    shape: GrowingBuffer,
+    /// Colour and opacity of each corner.
+    colors: GrowingBuffer,
+    indices: GrowingBuffer,
+    /// Number of indices.
     count: u32,
 }
 
 impl SurfaceMesh {
     pub fn new() -> Self {
-        Self { vertices: GrowingBuffer::new("triangles", wgpu::BufferUsages::VERTEX), count: 0 }
+        Self {
+            shape: GrowingBuffer::new("corners", wgpu::BufferUsages::VERTEX),
+            colors: GrowingBuffer::new("colours of corners", wgpu::BufferUsages::VERTEX),
+            indices: GrowingBuffer::new("triangles", wgpu::BufferUsages::INDEX),
+            count: 0,
+        }
     }
 
     /// Replaces the triangles by those of polygons, each shaded by its mean normal so that a warped polygon still reads
     /// as one.
     pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces) -> Result<(), RenderError> {
-        let mut vertices = Vec::with_capacity(faces.polygons.len() * 12);
+        let mut shape = Vec::with_capacity(faces.polygons.len() * 4);
+        let mut indices = Vec::with_capacity(faces.polygons.len() * 6);
         for (index, polygon) in faces.polygons.iter().enumerate() {
             let normal = faces.triangles(index).map(|[a, b, c]| (b - a).cross(c - a)).sum::<Vec3>();
             let normal = normal.try_normalize().unwrap_or(Vec3::Z);
-            let corner = |position| Vertex { position, normal, color: polygon.color, opacity: 1.0 };
-            vertices.extend(faces.triangles(index).flatten().map(corner));
+            let first = shape.len() as u32;
+            shape.extend(faces.corners(index).map(|position| [position, normal]));
+            if polygon.vertices.len() > 4 {
+                shape.push([faces.mean(index), normal]);
+            }
+            indices.extend(faces.cut(index).flatten().map(|i| first + i as u32));
         }
-        self.set(gpu, &vertices)
+        self.set(gpu, &shape, &indices)?;
+        self.set_colors(gpu, faces, &Vec::from_iter(faces.polygons.iter().map(|p| p.color)))
+    }
+
+    /// Shows the polygons set before in other colours, [polygon_count].
+    pub fn set_colors(&mut self, gpu: &Gpu, faces: &Faces, colors: &[[f32; 3]]) -> Result<(), RenderError> {
+        let corners = |polygon: &Polygon| match polygon.vertices.len() {
+            n @ 0..5 => n,
+            n => n + 1,
+        };
+        let color = |c: &[f32; 3]| Vec3::from(*c).extend(1.0);
+        let each = faces.polygons.iter().zip(colors);
+        let colors: Vec<Vec4> = each.flat_map(|(p, c)| std::iter::repeat_n(color(c), corners(p))).collect();
+        self.colors.write(gpu, bytemuck::cast_slice(&colors), gpu.device.limits().max_buffer_size)
     }
 
     /// Replaces the triangles by those of bodies.
     pub fn set_solids(&mut self, gpu: &Gpu, solids: &Solids) -> Result<(), RenderError> {
-        self.set(gpu, &solids.vertices())
+        let vertices = solids.vertices();
+        let shape: Vec<_> = vertices.iter().map(|v| [v.position, v.normal]).collect();
+        let colors: Vec<_> = vertices.iter().map(|v| Vec3::from(v.color).extend(v.opacity)).collect();
+        self.set(gpu, &shape, &Vec::from_iter(0..shape.len() as u32))?;
+        self.colors.write(gpu, bytemuck::cast_slice(&colors), gpu.device.limits().max_buffer_size)
     }
 
-    fn set(&mut self, gpu: &Gpu, vertices: &[Vertex]) -> Result<(), RenderError> {
-        self.count = vertices.len() as u32;
-        self.vertices.write(gpu, bytemuck::cast_slice(vertices), gpu.device.limits().max_buffer_size)
+    /// Replaces positions with normals, and triangles of them.
+    fn set(&mut self, gpu: &Gpu, shape: &[[Vec3; 2]], indices: &[u32]) -> Result<(), RenderError> {
+        let limit = gpu.device.limits().max_buffer_size;
+        self.count = indices.len() as u32;
+        self.shape.write(gpu, bytemuck::cast_slice(shape), limit)?;
+        self.indices.write(gpu, bytemuck::cast_slice(indices), limit)
     }
 }
 
@@ -65,26 +99,24 @@ impl SurfacePipelines {
         samples: u32,
     ) -> Self {
         let module = shader(device, "surface", &[light::WGSL, include_str!("surface.wgsl")]);
+        let buffer = |stride: usize, attributes| {
+            let step_mode = wgpu::VertexStepMode::Vertex;
+            Some(wgpu::VertexBufferLayout { array_stride: stride as u64, step_mode, attributes })
+        };
         let faces = Pipeline {
             label: "faces",
             module: &module,
             vertex: "surface_vertex",
             fragment: Some("surface_fragment"),
             layouts: &[lit_frame],
-            vertices: Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &ATTRIBUTES,
-            }),
+            vertices: &[buffer(size_of::<[Vec3; 2]>(), &SHAPE), buffer(size_of::<Vec4>(), &COLOR)],
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: None,
             target: Some(COLOR_FORMAT),
             depth: Some(Greater),
             samples,
         };
-        let vertices = || faces.vertices.clone();
-        let solids =
-            Pipeline { label: "solids", vertices: vertices(), cull: Some(wgpu::Face::Back), ..faces };
+        let solids = Pipeline { label: "solids", cull: Some(wgpu::Face::Back), ..faces };
         let shadow = Pipeline {
             label: "surface shadow",
             fragment: None,
@@ -92,7 +124,6 @@ impl SurfacePipelines {
             target: None,
             depth: Some(Less),
             samples: 1,
-            vertices: vertices(),
             ..faces
         };
         Self { solids: solids.build(device), shadow: shadow.build(device), faces: faces.build(device) }
@@ -113,10 +144,13 @@ impl SurfacePipelines {
     }
 
     fn draw_with(pipeline: &wgpu::RenderPipeline, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
-        if let Some(buffer) = mesh.vertices.buffer().filter(|_| mesh.count > 0) {
+        let buffers = [&mesh.shape, &mesh.colors, &mesh.indices].map(GrowingBuffer::buffer);
+        if let ([Some(shape), Some(colors), Some(indices)], 1..) = (buffers, mesh.count) {
             pass.set_pipeline(pipeline);
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..mesh.count, 0..1);
+            pass.set_vertex_buffer(0, shape.slice(..));
+            pass.set_vertex_buffer(1, colors.slice(..));
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..mesh.count, 0, 0..1);
         }
     }
 }

@@ -15,10 +15,9 @@ struct Corner {
 fn surface_vertex(
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    @location(2) color: vec3f,
-    @location(3) opacity: f32,
+    @location(2) color: vec4f,
 ) -> Corner {
-    return Corner(frame.view_projection * vec4f(position, 1.0), position, normal, color, opacity);
+    return Corner(frame.view_projection * vec4f(position, 1.0), position, normal, color.rgb, color.a);
 }
 
 @fragment

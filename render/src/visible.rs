@@ -6,6 +6,7 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
+use crate::pick::SEAM;
 use crate::{Camera, Faces};
 
 /// Nothing shows here.
@@ -68,7 +69,7 @@ impl Visible {
                 let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - a.truncate();
                 let v = p.perp_dot((c - a).truncate()) / area;
                 let w = (b - a).truncate().perp_dot(p) / area;
-                if v < 0.0 || w < 0.0 || v + w > 1.0 {
+                if v.min(w).min(1.0 - v - w) < -SEAM {
                     continue;
                 }
                 let depth = a.z + v * (b.z - a.z) + w * (c.z - a.z);

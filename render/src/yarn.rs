@@ -165,25 +165,21 @@ impl YarnPipelines {
             vertex: "tube_vertex",
             fragment: Some("tube_fragment"),
             layouts: &[lit_frame, &layout],
-            vertices: None,
+            vertices: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: Some(wgpu::Face::Back),
             target: Some(COLOR_FORMAT),
             depth: Some(Greater),
             samples,
         };
-        let frayed = Pipeline {
-            label: "frayed yarn tubes",
-            fragment: Some("frayed_fragment"),
-            vertices: None,
-            ..tube
-        };
+        let frayed =
+            Pipeline { label: "frayed yarn tubes", fragment: Some("frayed_fragment"), vertices: &[], ..tube };
         let ribbon = Pipeline {
             label: "yarn ribbons",
             vertex: "ribbon_vertex",
             fragment: Some("ribbon_fragment"),
             cull: None,
-            vertices: None,
+            vertices: &[],
             ..tube
         };
         let shadow = Pipeline {
@@ -194,7 +190,7 @@ impl YarnPipelines {
             target: None,
             depth: Some(Less),
             samples: 1,
-            vertices: None,
+            vertices: &[],
             ..ribbon
         };
         let [frayed, tube, ribbon, shadow] =

@@ -24,17 +24,23 @@ use stitch_mesh::stitch::Stitch;
 pub struct Window {
     /// The harness.
     pub harness: Harness<'static, Editor>,
-    /// Dropped with the window, which ends the watch.
-    _watch: Sender<()>,
+    /// Told whenever the window is at rest; dropped with it, which ends the watch.
+    watch: Sender<()>,
 }
 
 /// Ends the tests where a frame never comes back: nothing else would.
 fn watch() -> Sender<()> {
     let (watched, gone) = channel();
     std::thread::spawn(move || {
-        if gone.recv_timeout(Duration::from_secs(90)) == Err(RecvTimeoutError::Timeout) {
-            say("the window hangs: a frame has not come back");
-            std::process::exit(101);
+        loop {
+            match gone.recv_timeout(Duration::from_secs(90)) {
+                Ok(()) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+                Err(RecvTimeoutError::Timeout) => {
+                    say("the window hangs: a frame has not come back");
+                    std::process::exit(101);
+                }
+            }
         }
     });
     watched
@@ -53,7 +59,7 @@ impl Window {
             .with_accessibility_check(false) // at every step; here once, in a test of its own
             .renderer(WgpuTestRenderer::from_render_state(painter))
             .build_ui_state(|ui, editor: &mut Editor| editor.ui(ui), editor);
-        let mut window = Self { harness, _watch: watch() };
+        let mut window = Self { harness, watch: watch() };
         window.rest();
         window
     }
@@ -83,6 +89,8 @@ impl Window {
         self.harness.step();
         self.wait("rest", Editor::is_idle);
         self.harness.step();
+        // The watch ends only with the program.
+        let _ = self.watch.send(());
     }
 
     /// Clicks a button.
@@ -121,6 +129,22 @@ impl Window {
     #[track_caller]
     pub fn click(&mut self, at: Pos2, modifiers: Modifiers) {
         self.drag(at, at, modifiers);
+    }
+
+    /// Clicks one place after the other, so that all that is there becomes selected.
+    pub fn click_all(&mut self, places: &[Pos2]) {
+        for (i, at) in places.iter().enumerate() {
+            let modifiers = if i == 0 { Modifiers::NONE } else { Modifiers::SHIFT };
+            self.harness.hover_at(*at);
+            self.harness.event(Event::ModifiersChanged(modifiers));
+            for pressed in [true, false] {
+                let button = PointerButton::Primary;
+                self.harness.event(Event::PointerButton { pos: *at, button, pressed, modifiers });
+            }
+            self.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+            self.harness.step();
+        }
+        self.rest();
     }
 
     /// Clicks twice, quickly.

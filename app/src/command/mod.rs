@@ -15,12 +15,11 @@ mod tessellation;
 pub use script::{read_script, write_script};
 
 use crate::project::Project;
-use crate::relax::relax_mesh;
+use crate::relax::{Watch, relax_mesh, unwatched};
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use sim_core::mesh_relax::RelaxParams;
 use sim_core::{Material, Scene};
-use std::ops::ControlFlow;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::edit::{End, Survivors, Way};
@@ -240,11 +239,16 @@ impl Command {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&self, project: &Project) -> Result<Project> {
-        Ok(self.perform(project)?.0)
+        Ok(self.perform(project, &mut unwatched)?.0)
     }
 
-    /// The project after this command, and which faces and vertices came through it when it has changed the faces of the stitch mesh.
-    pub(crate) fn perform(&self, project: &Project) -> Result<(Project, Option<Survivors>)> {
+    /// The project after this command, and which faces and vertices came through it when it has changed the faces of the stitch
+    /// mesh. `watch` sees stitches that are being relaxed, and may break off.
+    pub(crate) fn perform(
+        &self,
+        project: &Project,
+        watch: Watch<'_>,
+    ) -> Result<(Project, Option<Survivors>)> {
         let mut after = project.clone();
         let mut survivors = None;
         let project = &mut after;
@@ -296,7 +300,7 @@ impl Command {
             }
             Self::RelaxMesh { aspect, fill, surface } => {
                 let params = RelaxParams { aspect: *aspect, fill: *fill, ..RelaxParams::default() };
-                *project = relax_mesh(project, params, *surface, &mut |_, _| ControlFlow::Continue(()))?;
+                *project = relax_mesh(project, params, *surface, watch)?;
             }
         }
         Ok((after, survivors))

@@ -8,8 +8,8 @@ use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
 use super::search::Search;
 use super::selection::{Mode, Selection};
-use super::session::{Request, Session};
-use super::view::View;
+use super::session::{Preview, Request, Session};
+use super::view::{Survey, View};
 use super::{actions, panels};
 use crate::command::Command;
 use crate::drawing::Stage;
@@ -18,11 +18,13 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use render::{Bounds, Camera, Faces, NamedView};
 use sim_core::{Material, Pin, Scene, SimCommand, SimThread, Snapshot};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
-use stitch_mesh::ids::HalfEdgeId;
+use stitch_mesh::ids::{FaceId, HalfEdgeId};
 use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::Stitch;
+use stitch_mesh::stitch_mesh::StitchMesh;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// The state of the user interface.
@@ -31,6 +33,8 @@ pub struct Editor {
     pub(super) sim: SimThread,
     pub(super) screen: Option<Screen>,
     pub(super) view: Arc<View>,
+    /// Facts about the view, or about the one before while those are found.
+    pub(super) survey: Arc<Survey>,
     pub(super) stage: Stage,
     pub(super) tool: Tool,
     pub(super) gesture: Option<Gesture>,
@@ -48,6 +52,12 @@ pub struct Editor {
     pub(super) selections: [Selection; 2],
     /// What the screen shows beside yarn, for picking; polygons and their sides are those of the mesh.
     pub(super) faces: Faces,
+    /// Whether stitches have the colours of their strain.
+    pub(super) strained: bool,
+    /// Stitches on their way, as they were shown last.
+    pub(super) preview: Option<Arc<Preview>>,
+    /// The stitch mesh whose faces are on the screen, and those that are hidden.
+    pub(super) drawn: Option<(Arc<StitchMesh>, BTreeSet<FaceId>)>,
     /// The side of a face that the pointer is nearest to, and where it points.
     pub(super) under: Option<(HalfEdgeId, Vec3)>,
     /// What the marks on the screen were made for; none where they are out of date.
@@ -56,6 +66,8 @@ pub struct Editor {
     /// Whether the snapshot is not on the screen yet.
     is_new: bool,
     shown: Option<(u64, Stage)>,
+    /// Whether the faces on the screen have other colours now.
+    pub(super) recolour: bool,
     /// The net that the simulation has, how often it had been placed, and material and scene.
     loaded: Option<Arc<YarnNet>>,
     placed: u64,
@@ -74,20 +86,21 @@ impl Editor {
         project: Project,
         path: Option<PathBuf>,
         screen: Option<Screen>,
-        wake: impl Fn() + Send + Clone + 'static,
+        wake: impl Fn() + Send + Sync + Clone + 'static,
     ) -> Result<Self> {
         let stage = match (&project.fabric, project.labelled.labels().iter().any(Option::is_some)) {
             (Some(_), _) => Stage::Yarn,
             (None, _) => Stage::Labels,
         };
-        let session = Session::spawn(project, path, Box::new(wake.clone()))?;
-        let view = session.latest();
+        let session = Session::spawn(project, path, Arc::new(wake.clone()))?;
+        let (view, survey) = (session.latest(), session.survey());
         Ok(Self {
             sim: SimThread::spawn(Box::new(wake))?,
             panel: panels::State::of(&view),
             session,
             screen,
             view,
+            survey,
             stage,
             tool: Tool::Select,
             gesture: None,
@@ -100,11 +113,15 @@ impl Editor {
             typing: false,
             selections: [Selection::new(Mode::Edge), Selection::new(Mode::Face)],
             faces: Faces::default(),
+            strained: false,
+            preview: None,
+            drawn: None,
             under: None,
             marked: None,
             snapshot: None,
             is_new: false,
             shown: None,
+            recolour: false,
             loaded: None,
             placed: 0,
             simulated: None,
@@ -145,6 +162,7 @@ impl Editor {
     pub fn is_idle(&self) -> bool {
         !self.session.is_busy()
             && self.shown.is_some_and(|(revision, _)| revision == self.session.latest().revision)
+            && self.survey.revision == self.view.revision
     }
 
     /// Sends a request, with the yarn as it is just now.
@@ -215,6 +233,11 @@ impl Editor {
         } else if self.shown.is_none() {
             self.load_yarn(); // the first frame
         }
+        let survey = self.session.survey();
+        if !Arc::ptr_eq(&survey, &self.survey) {
+            self.survey = survey;
+            self.recolour |= self.strained;
+        }
         let snapshot = self.sim.latest().filter(|s| s.generation == self.generation);
         let is_new = match (&snapshot, &self.snapshot) {
             (Some(new), Some(old)) => !Arc::ptr_eq(new, old),
@@ -235,7 +258,10 @@ impl Editor {
             self.show_stage();
         } else if is_new && self.stage == Stage::Yarn {
             self.show_yarn();
+        } else if std::mem::take(&mut self.recolour) {
+            self.show_colors();
         }
+        self.show_preview();
         if !self.framed && self.bounds().is_some() {
             self.framed = true;
             self.frame(Some(NamedView::ThreeQuarter));

@@ -40,7 +40,7 @@ impl Editor {
         if before.hidden != self.selections[index].hidden {
             self.show_stage();
         } else if before != self.selections[index] {
-            self.show_selection();
+            self.show_colors();
         }
     }
 

@@ -4,6 +4,7 @@ mod actions;
 mod catalogue;
 mod clipboard;
 pub mod editor;
+mod legend;
 mod meant;
 mod navigation;
 mod numbers;

@@ -2,9 +2,10 @@
 
 use super::editor::Editor;
 use super::selection::Mode;
-use crate::drawing::{Stage, drawing_where, solids};
+use crate::drawing::{Stage, drawing_where, solids, stitch_colors};
 use glam::Vec3;
 use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
+use std::sync::Arc;
 use stitch_mesh::ids::FaceId;
 
 /// Width of lines around what is selected and around what the pointer is over [px].
@@ -16,9 +17,28 @@ const TINT: f32 = 0.45;
 const LIFT: f64 = 2.6;
 
 impl Editor {
-    /// Puts the stage on the screen.
+    /// Puts the stage on the screen. Stitches that have only changed their kind keep their polygons.
     pub(super) fn show_stage(&mut self) {
         let stage = self.shown_stage();
+        let fabric = self.view.project.fabric.as_ref().filter(|_| stage == Stage::Stitches);
+        let drawn = fabric.map(|f| (f.stitches.clone(), self.selection().hidden.clone()));
+        let same = match (&drawn, &self.drawn) {
+            (Some((new, hidden)), Some((old, were))) => new.has_mesh_of(old) && hidden == were,
+            _ => false,
+        };
+        self.drawn = drawn;
+        self.preview = None;
+        if !same {
+            self.show_polygons(stage);
+        } else if let Some(fabric) = fabric {
+            for (polygon, color) in self.faces.polygons.iter_mut().zip(stitch_colors(&fabric.stitches)) {
+                polygon.color = color;
+            }
+        }
+        self.show_colors();
+    }
+
+    fn show_polygons(&mut self, stage: Stage) {
         let drawing = match stage {
             Stage::Yarn => {
                 // Curves come with the snapshots, made in the simulation's thread.
@@ -30,45 +50,81 @@ impl Editor {
                 drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f)).unwrap_or_default()
             }
         };
-        if let Some(screen) = &mut self.screen
-            && let Err(error) = screen.set(&drawing)
-        {
+        let shown = self.screen.as_mut().map(|screen| screen.set(&drawing));
+        self.report(shown);
+        self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
+    }
+
+    /// Says what could not be shown.
+    fn report(&mut self, shown: Option<anyhow::Result<()>>) {
+        if let Some(Err(error)) = shown {
             self.error = Some(format!("{error:#}"));
         }
-        self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
-        self.show_selection();
+    }
+
+    /// Shows stitches that are being relaxed where they are just now.
+    pub(super) fn show_preview(&mut self) {
+        let now = self.session.work().and_then(|w| w.preview);
+        let now = now.filter(|p| self.stage == Stage::Stitches && p.revision == self.view.revision);
+        match (now, &self.preview) {
+            (Some(now), before) => {
+                let is_new = before.as_ref().is_none_or(|b| !Arc::ptr_eq(b, &now));
+                if is_new && now.positions.len() == self.faces.positions.len() {
+                    self.faces.positions.clone_from(&now.positions);
+                    for (polygon, strain) in self.faces.polygons.iter_mut().zip(&now.strain) {
+                        polygon.color = palette::strain(*strain);
+                    }
+                    let shown = self.screen.as_mut().map(|screen| screen.set_faces(&self.faces));
+                    self.report(shown);
+                    self.preview = Some(now);
+                    self.drawn = None;
+                }
+            }
+            // Done and shown by now, or given up.
+            (None, Some(_)) => self.show_stage(),
+            (None, None) => {}
+        }
     }
 
     /// Puts yarn that has moved on the screen.
     pub(super) fn show_yarn(&mut self) {
         let Some(snapshot) = self.snapshot.clone() else { return };
-        if let Some(screen) = &mut self.screen
-            && let Err(error) = screen.set_yarn(&snapshot.curves)
-        {
-            self.error = Some(format!("{error:#}"));
-        }
+        let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&snapshot.curves));
+        self.report(shown);
         self.faces = self.loop_faces();
         self.marked = None;
     }
 
-    /// Tints what is selected.
-    pub(super) fn show_selection(&mut self) {
+    /// Colours the faces: by their own colours or by strain, tinted where they are selected.
+    pub(super) fn show_colors(&mut self) {
         self.marked = None;
         if self.shown_stage() == Stage::Yarn {
             return; // yarn has its outline only
         }
-        let mut tinted = self.faces.clone();
+        let mut colors: Vec<[f32; 3]> = self.faces.polygons.iter().map(|p| p.color).collect();
+        if let Some(strain) = self.strain() {
+            colors.iter_mut().zip(strain).for_each(|(color, strain)| *color = palette::strain(*strain));
+        }
         for face in &self.selection().faces {
-            if let Some(polygon) = tinted.polygons.get_mut(face.index()) {
+            if let Some(color) = colors.get_mut(face.index()) {
                 let mix = |own: f32, tint: f32| own + (tint - own) * TINT;
-                polygon.color = [0, 1, 2].map(|i| mix(polygon.color[i], palette::SELECTED[i]));
+                *color = [0, 1, 2].map(|i| mix(color[i], palette::SELECTED[i]));
             }
         }
-        if let Some(screen) = &mut self.screen
-            && let Err(error) = screen.set_faces(&tinted)
-        {
-            self.error = Some(format!("{error:#}"));
-        }
+        let shown = self.screen.as_mut().map(|screen| screen.set_colors(&self.faces, &colors));
+        self.report(shown);
+    }
+
+    /// Colours stitches by strain, or by kind.
+    pub(super) fn set_strained(&mut self, strained: bool) {
+        self.recolour |= std::mem::replace(&mut self.strained, strained) != strained;
+    }
+
+    /// Strain of the faces on the screen, if that is to be seen and known.
+    pub(super) fn strain(&self) -> Option<&[f32]> {
+        let strain = self.survey.facts.mesh_strain.as_ref();
+        let shows = self.strained && self.shown_stage() == Stage::Stitches;
+        strain.filter(|s| shows && s.faces.len() == self.faces.polygons.len()).map(|s| &*s.faces)
     }
 
     /// Draws the outlines of what is selected and of what the pointer is over, where either has changed.

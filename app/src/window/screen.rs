@@ -41,7 +41,15 @@ impl Screen {
         Ok(self.scene.set(&self.gpu, drawing)?)
     }
 
-    /// Replaces the faces only: what is selected has other colours.
+    /// Shows the faces set last in other colours.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_colors(&mut self, faces: &Faces, colors: &[[f32; 3]]) -> Result<()> {
+        Ok(self.scene.set_colors(&self.gpu, faces, colors)?)
+    }
+
+    /// Replaces the faces only.
     ///
     /// # Errors
     /// As [`Self::set`].

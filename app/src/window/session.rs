@@ -1,21 +1,25 @@
 //! The document in a thread of its own, so that the window never waits for an edit, a file or a large mesh.
 //!
-//! Requests go in, in order; the newest [`View`] comes out. The window draws what it last saw.
+//! Requests go in, in order; the newest [`View`] comes out, and a [`Survey`] of it follows when nothing else waits. The window
+//! draws what it last saw.
 //!
 //! Long work can be cancelled. A command makes a new project and leaves the old one alone, so whatever it is, it runs in yet
-//! another thread and its result is simply not taken over: the document is as it was, at once, while the work runs out with
-//! nobody waiting for it.
+//! another thread and its result is simply not taken over: the document is as it was, at once. Work that can be watched, a
+//! relaxation, ends with its next step; other work runs out with nobody waiting for it.
 
-use super::view::View;
+use super::view::{Survey, View};
 use crate::command::{Command, write_script};
 use crate::document::Document;
 use crate::files;
 use crate::project::Project;
 use anyhow::{Context, Result, bail};
+use glam::Vec3;
+use sim_core::mesh_relax::{MeshRelaxation, StepFacts};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use stitch_mesh::yarn_net::YarnState;
 
@@ -64,15 +68,38 @@ pub struct Work {
     pub name: String,
     /// Since when.
     pub since: Instant,
-    cancelled: bool,
+    /// What it has come to so far, if it can be watched.
+    pub preview: Option<Arc<Preview>>,
+    cancelled: Arc<AtomicBool>,
+}
+
+/// Stitches on their way while they are relaxed.
+#[derive(Clone, Debug)]
+pub struct Preview {
+    /// The revision that they were in before.
+    pub revision: u64,
+    /// Steps so far.
+    pub steps: usize,
+    /// Vertices of the stitch mesh [m].
+    pub positions: Vec<Vec3>,
+    /// Strain of its faces.
+    pub strain: Vec<f32>,
 }
 
 /// A running session. Dropping it lets the thread finish what it was asked and end.
 pub struct Session {
     requests: Sender<(Request, Option<Arc<YarnState>>)>,
-    latest: Arc<Mutex<Arc<View>>>,
+    latest: Arc<Mutex<(Arc<View>, Arc<Survey>)>>,
     waiting: Arc<AtomicUsize>,
     work: Arc<Mutex<Option<Work>>>,
+}
+
+/// Asks for another frame.
+type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// The value behind a lock; what a thread that panicked has left there is as good as any.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Session {
@@ -80,11 +107,7 @@ impl Session {
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub fn spawn(
-        project: Project,
-        path: Option<PathBuf>,
-        wake: Box<dyn Fn() + Send>,
-    ) -> std::io::Result<Self> {
+    pub fn spawn(project: Project, path: Option<PathBuf>, wake: Wake) -> std::io::Result<Self> {
         let (requests, received) = channel::<(Request, Option<Arc<YarnState>>)>();
         let work = Arc::new(Mutex::new(None));
         let mut worker = Worker {
@@ -94,14 +117,23 @@ impl Session {
             placed: 0,
             work: Arc::clone(&work),
             latest: None,
+            wake: Arc::clone(&wake),
         };
-        let latest = Arc::new(Mutex::new(worker.view(Ok(String::new()))));
+        let view = worker.view(Ok(String::new()));
+        let survey = Arc::new(Survey::of(&view));
+        let latest = Arc::new(Mutex::new((view, survey)));
         let waiting = Arc::new(AtomicUsize::new(0));
-        let (slot, count) = (Arc::clone(&latest), Arc::clone(&waiting));
+        let (slot, count, work_slot) = (Arc::clone(&latest), Arc::clone(&waiting), Arc::clone(&work));
         std::thread::Builder::new().name("document".to_owned()).spawn(move || {
             for (request, yarn) in received {
                 let view = worker.carry_out(request, yarn);
-                *slot.lock().unwrap_or_else(PoisonError::into_inner) = view;
+                lock(&slot).0 = Arc::clone(&view);
+                *lock(&work_slot) = None;
+                wake();
+                // Of a state that is about to change nobody needs to know more.
+                if count.load(Ordering::Acquire) == 1 {
+                    lock(&slot).1 = Arc::new(Survey::of(&view));
+                }
                 count.fetch_sub(1, Ordering::Release);
                 wake();
             }
@@ -133,7 +165,12 @@ impl Session {
 
     /// The newest view.
     pub fn latest(&self) -> Arc<View> {
-        self.latest.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        lock(&self.latest).0.clone()
+    }
+
+    /// The newest survey; it may be of an earlier view.
+    pub fn survey(&self) -> Arc<Survey> {
+        lock(&self.latest).1.clone()
     }
 
     /// Whether requests are still being worked on.
@@ -143,13 +180,13 @@ impl Session {
 
     /// What is going on just now.
     pub fn work(&self) -> Option<Work> {
-        self.work.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        lock(&self.work).clone()
     }
 
     /// Gives up what is going on; the document stays as it was before.
     pub fn cancel(&self) {
-        if let Some(work) = &mut *self.work.lock().unwrap_or_else(PoisonError::into_inner) {
-            work.cancelled = true;
+        if let Some(work) = &mut *lock(&self.work) {
+            work.cancelled.store(true, Ordering::Release);
         }
     }
 }
@@ -161,12 +198,13 @@ struct Worker {
     placed: u64,
     work: Arc<Mutex<Option<Work>>>,
     latest: Option<Arc<View>>,
+    wake: Wake,
 }
 
 impl Worker {
     fn carry_out(&mut self, request: Request, yarn: Option<Arc<YarnState>>) -> Arc<View> {
-        let doing = Work { name: request.doing(), since: Instant::now(), cancelled: false };
-        *self.work.lock().unwrap_or_else(PoisonError::into_inner) = Some(doing);
+        let (name, since) = (request.doing(), Instant::now());
+        *lock(&self.work) = Some(Work { name, since, preview: None, cancelled: Arc::default() });
         if let Some(yarn) = yarn {
             self.document.set_state(yarn, None);
         }
@@ -176,9 +214,7 @@ impl Worker {
         // Laid anew, or that taken back: the document has put the yarn somewhere itself.
         self.placed += u64::from(resets(&self.document) != before);
         self.revision += 1;
-        let view = self.view(message);
-        *self.work.lock().unwrap_or_else(PoisonError::into_inner) = None;
-        view
+        self.view(message)
     }
 
     fn try_to(&mut self, request: Request) -> Result<String> {
@@ -223,7 +259,23 @@ impl Worker {
 
     fn apply(&mut self, command: Command, amends: bool) -> Result<String> {
         let (doing, before) = (command.clone(), self.document.project().clone());
-        let after = self.unless_cancelled(move || doing.perform(&before))?;
+        let (work, wake) = (Arc::clone(&self.work), Arc::clone(&self.wake));
+        let cancelled = lock(&self.work).as_ref().map(|w| Arc::clone(&w.cancelled)).unwrap_or_default();
+        let (revision, mut steps) = (self.revision, 0);
+        let mut watch = move |relaxation: &MeshRelaxation, _: &StepFacts| {
+            steps += 1;
+            let positions = relaxation.positions().iter().map(|p| p.as_vec3()).collect();
+            let strain = relaxation.strain().iter().map(|s| *s as f32).collect();
+            if cancelled.load(Ordering::Acquire) {
+                return ControlFlow::Break(()); // other work may be going on by now
+            }
+            if let Some(work) = &mut *lock(&work) {
+                work.preview = Some(Arc::new(Preview { revision, steps, positions, strain }));
+            }
+            wake();
+            ControlFlow::Continue(())
+        };
+        let after = self.unless_cancelled(move || doing.perform(&before, &mut watch))?;
         let name = command.name();
         self.document.keep(command, after, amends);
         Ok(name)
@@ -244,8 +296,7 @@ impl Worker {
                 Ok(result) => return result,
                 Err(RecvTimeoutError::Disconnected) => bail!("the work ended without a result"),
                 Err(RecvTimeoutError::Timeout) => {
-                    let work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
-                    if work.as_ref().is_some_and(|w| w.cancelled) {
+                    if lock(&self.work).as_ref().is_some_and(|w| w.cancelled.load(Ordering::Acquire)) {
                         bail!("cancelled");
                     }
                 }

@@ -18,8 +18,6 @@ pub struct View {
     pub placed: u64,
     /// The project.
     pub project: Project,
-    /// Facts about it.
-    pub facts: Inspection,
     /// Rows of the labelled mesh.
     pub labelled_rows: Arc<Rows<LabelledMesh>>,
     /// Rows of the fabric.
@@ -32,6 +30,22 @@ pub struct View {
     pub undone: Vec<String>,
     /// What the last request came to: done, or why not.
     pub message: Result<String, String>,
+}
+
+/// Facts about a project: they take longer to find than most edits, so they come after the view.
+#[derive(Debug, Default)]
+pub struct Survey {
+    /// The revision that was looked at.
+    pub revision: u64,
+    /// What was found.
+    pub facts: Inspection,
+}
+
+impl Survey {
+    /// Looks at a view's project.
+    pub(super) fn of(view: &View) -> Self {
+        Self { revision: view.revision, facts: inspect(&view.project) }
+    }
 }
 
 /// Rows of a mesh, and where each face is in them.
@@ -84,7 +98,6 @@ impl View {
         Self {
             revision,
             placed,
-            facts: inspect(&project),
             labelled_rows,
             fabric_rows,
             project,

@@ -1,7 +1,7 @@
 //! The middle of the window: the picture, with the camera and the tools under the mouse.
 
 use super::editor::Editor;
-use super::{navigation, numbers, pointer};
+use super::{legend, navigation, numbers, pointer};
 use egui::Sense;
 
 /// Shows the viewport and does what the mouse asks for.
@@ -16,6 +16,7 @@ pub fn show(editor: &mut Editor, ui: &mut egui::Ui) {
         navigation::move_camera(editor, ui, &response, rect);
         pointer::use_tool(editor, ui, &response, rect);
         numbers::show(editor, ui, rect);
+        legend::show(editor, ui, rect);
         editor.show_marks();
         let scale = ui.ctx().pixels_per_point();
         let pixels = [size.x, size.y].map(|s| (s * scale).round().max(1.0) as u32);

@@ -3,6 +3,7 @@
 
 use super::{Action, FABRIC, On, ends};
 use crate::command::Command;
+use crate::drawing::Stage;
 use crate::window::editor::Editor;
 use crate::window::runs::runs;
 use crate::window::surface::Surface;
@@ -86,6 +87,15 @@ pub(super) const ACTIONS: &[Action] = &[
     Action::new("Relax mesh", "Make the stitches as even as they can be, and lay the yarn again", |e| {
         let [aspect, fill] = e.panel.relax;
         e.act(Command::RelaxMesh { aspect, fill, surface: e.panel.relax_on_surface });
+        // To be watched.
+        e.go_to(Stage::Stitches);
+        e.set_strained(true);
+    })
+    .at(FABRIC),
+    Action::new("Show strain", "Colour stitches by how far they are from even, or by their kind", |e| {
+        let strained = !(e.strained && e.stage == Stage::Stitches);
+        e.go_to(Stage::Stitches);
+        e.set_strained(strained);
     })
     .at(FABRIC),
 ];

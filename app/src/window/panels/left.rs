@@ -1,6 +1,6 @@
 //! Tools and what they work with, stage by stage.
 
-use super::{colour, palette, patterns, tessellation, yarn};
+use super::{colour, evenness, palette, patterns, tessellation, yarn};
 use crate::drawing::Stage;
 use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
@@ -98,7 +98,7 @@ fn fabric(editor: &mut Editor, ui: &mut Ui) {
             ui.separator();
             edges(editor, ui);
             ui.separator();
-            relaxing(editor, ui);
+            evenness::show(editor, ui);
         }
         Tab::Simulate => yarn::show(editor, ui),
     }
@@ -147,29 +147,6 @@ fn labels(editor: &mut Editor, ui: &mut Ui) {
     button(editor, ui, "Clear labels");
     ui.separator();
     tessellation::show(editor, ui);
-}
-
-/// Numbers of relaxing.
-fn relaxing(editor: &mut Editor, ui: &mut Ui) {
-    ui.heading("Evenness");
-    ui.horizontal(|ui| {
-        for (i, (name, what)) in [
-            ("Aspect", "Height of a stitch over its width at rest"),
-            ("Fill", "How much of the surface stitches fill at rest"),
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            let label = ui.label(name);
-            let most = if i == 0 { 3.0 } else { 1.0 };
-            let field = egui::DragValue::new(&mut editor.panel.relax[i]).range(0.2..=most).speed(0.01);
-            ui.add(field).labelled_by(label.id).on_hover_text(what);
-        }
-    });
-    ui.checkbox(&mut editor.panel.relax_on_surface, "On the surface").on_hover_text(
-        "Stitches stay on the smooth surface of the input mesh; otherwise they find a shape of their own",
-    );
-    button(editor, ui, "Relax mesh");
 }
 
 /// What is marked on edges, and how stitches meet at them.

@@ -1,6 +1,7 @@
 //! The panels around the viewport.
 
 mod colour;
+mod evenness;
 mod history;
 pub mod left;
 mod palette;
@@ -16,6 +17,11 @@ use super::view::View;
 use sim_core::Material;
 use sim_core::mesh_relax::RelaxParams;
 use stitch_mesh::dye::Dye;
+
+/// A colour of the picture, linear RGB, as egui wants it.
+pub fn color32([r, g, b]: [f32; 3]) -> egui::Color32 {
+    egui::Rgba::from_rgb(r, g, b).into()
+}
 
 /// What the panels remember between frames.
 pub struct State {

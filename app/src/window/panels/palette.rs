@@ -1,5 +1,6 @@
 //! All kinds of stitches, to set or to paint with.
 
+use super::color32;
 use crate::window::catalogue::{Group, KINDS, Kind};
 use crate::window::editor::Editor;
 use egui::{Color32, Ui};
@@ -7,8 +8,7 @@ use render::palette;
 
 /// The colour of a stitch in the picture.
 pub fn color(symbol: &str) -> Color32 {
-    let [r, g, b] = palette::stitch(symbol, 0);
-    egui::Rgba::from_rgb(r, g, b).into()
+    color32(palette::stitch(symbol, 0))
 }
 
 /// Shows the palette.

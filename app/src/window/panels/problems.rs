@@ -13,8 +13,10 @@ const MOST: usize = 40;
 /// Shows them.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
     ui.heading("Problems");
-    let view = editor.view.clone();
-    let problems = &view.facts.problems;
+    let survey = editor.survey.clone();
+    let problems = &survey.facts.problems;
+    // Those of an earlier state may lie on faces that are no more.
+    let current = survey.revision == editor.view.revision;
     if problems.is_empty() {
         ui.label("none");
         return;
@@ -23,7 +25,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         for problem in problems.iter().take(MOST) {
             let text = RichText::new(format!("{}: {}", problem.r#where, problem.what));
             let button = egui::Button::new(text.color(ui.visuals().warn_fg_color)).wrap().frame(false);
-            if ui.add(button).on_hover_text("Select it and look at it").clicked() {
+            if ui.add_enabled(current, button).on_hover_text("Select it and look at it").clicked() {
                 show_where(editor, problem);
             }
         }

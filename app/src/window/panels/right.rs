@@ -19,7 +19,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
 
 fn facts(editor: &Editor, ui: &mut Ui) {
     ui.heading("Fabric");
-    let facts = &editor.view.facts;
+    let facts = &editor.survey.facts;
     let [x, y, z] = facts.size_mm;
     ui.label(format!("{} faces in {} rows", facts.faces, facts.rows));
     if facts.loops > 0 {
