@@ -27,8 +27,8 @@ pub enum SimCommand {
         material: Material,
         /// What surrounds it.
         scene: Scene,
-        /// Where it starts.
-        state: YarnState,
+        /// Where it starts; as it was laid, if nowhere else.
+        state: Option<Arc<YarnState>>,
     },
     /// Let time go by.
     Play,
@@ -116,7 +116,7 @@ struct Run {
     net: Arc<YarnNet>,
     /// None where the net, material, scene or state can't be simulated.
     simulator: Option<Simulator>,
-    loaded: YarnState,
+    loaded: Arc<YarnState>,
     radius: f64,
     playing: bool,
     error: Option<String>,
@@ -162,6 +162,7 @@ impl Worker {
         match (command, &mut self.run) {
             (SimCommand::Load { net, material, scene, state }, run) => {
                 self.loads += 1;
+                let state = state.unwrap_or_else(|| Arc::new(net.laid_state()));
                 *run = Some(Run::new(net, material, scene, state));
             }
             (SimCommand::Stop, run) => *run = None,
@@ -185,9 +186,9 @@ impl Worker {
 }
 
 impl Run {
-    fn new(net: Arc<YarnNet>, material: Material, scene: Scene, state: YarnState) -> Self {
+    fn new(net: Arc<YarnNet>, material: Material, scene: Scene, state: Arc<YarnState>) -> Self {
         let radius = material.drawn_radius;
-        let made = Simulator::new(&net, material, scene, state.clone());
+        let made = Simulator::new(&net, material, scene, (*state).clone());
         let (simulator, error) = match made {
             Ok(simulator) => (Some(simulator), None),
             Err(error) => (None, Some(error.to_string())),
@@ -233,7 +234,7 @@ impl Run {
     }
 
     fn snapshot(&self, generation: u64) -> Snapshot {
-        let state = self.simulator.as_ref().map_or(&self.loaded, Simulator::state);
+        let state = self.simulator.as_ref().map_or(&*self.loaded, Simulator::state);
         let drawable = state.fits(&self.net) && state.is_finite();
         Snapshot {
             generation,
@@ -264,7 +265,7 @@ mod tests {
         let mut state = net.laid_state();
         spoil(&mut state);
         let material = Material::for_loop_width(3e-3);
-        thread.send(SimCommand::Load { net, material, scene: Scene::empty(), state })
+        thread.send(SimCommand::Load { net, material, scene: Scene::empty(), state: Some(Arc::new(state)) })
     }
 
     /// Waits for a snapshot that `is` so.

@@ -1,22 +1,22 @@
 //! How long an edit of a garment takes: `cargo bench --workspace --bench editing`.
 //!
 //! A tube of 65 000 stitches. "Laying" is all yarn from nothing, "restacking" what painting a purl does to the net, the
-//! commands are what the document thread does for one edit (yarn, pins, what is carried over), and "redrawing" is the picture of
-//! the stitch mesh at 1280 × 720 on whatever adapter there is.
+//! commands are what the document thread does for one edit (yarn, pins, what is carried over), and the last is all of it: a key in
+//! the window, until the stitch mesh is drawn with the new stitch, on whatever adapter there is.
 
 #![allow(missing_docs, clippy::unwrap_used, reason = "a benchmark that cannot begin has to stop")]
 
 use app::command::Command;
-use app::drawing::{Stage, drawing};
-use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use render::{Camera, NamedView, Quality, Renderer, Scene, Viewport};
-use std::time::Duration;
+use criterion::{Criterion, criterion_group, criterion_main};
+use egui::{Key, Modifiers};
+use std::time::{Duration, Instant};
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::lay::{lay, relay};
 use stitch_mesh::pieces::tube;
 use stitch_mesh::stitch::Stitch;
 use tests::fabrics::project_of;
+use tests::window::Window;
 
 fn editing(bench: &mut Criterion) {
     let stitches = tube(260, 250, StitchSize::of_width(3e-3)).unwrap();
@@ -43,24 +43,30 @@ fn editing(bench: &mut Criterion) {
         group.bench_function(name, |b| b.iter_with_large_drop(|| command.apply(&project).unwrap()));
     }
 
-    let gpu = render::Gpu::headless().unwrap();
-    let renderer = Renderer::new(&gpu, Quality::Interactive);
-    let size = [1280, 720];
-    let viewport = Viewport::new(&gpu, &renderer, size).unwrap();
-    group.bench_function("redrawing the stitch mesh", |b| {
-        b.iter_batched(
-            Scene::new,
-            |mut scene| {
-                let picture = drawing(&project, Stage::Stitches).unwrap();
-                let camera = Camera::named(NamedView::Front, picture.bounds().unwrap(), 1280.0 / 720.0);
-                scene.set(&gpu, &picture).unwrap();
-                let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                renderer.draw(&gpu, &mut encoder, &viewport, &camera, &scene);
-                gpu.queue.submit([encoder.finish()]);
-                gpu.device.poll(egui_wgpu::wgpu::PollType::wait_indefinitely()).unwrap();
-            },
-            BatchSize::PerIteration,
-        );
+    let mut window = Window::new(project);
+    window.press("Stitches");
+    window.press("Front");
+    window.click_stitch(31_000, None, Modifiers::NONE);
+    let face = window.selected()[0];
+    let mut purl = false;
+    group.bench_function("a key in the window until its stitch shows", |b| {
+        b.iter_custom(|times| {
+            let mut taken = Duration::ZERO;
+            for _ in 0..times {
+                // What follows an edit (facts, the simulation of the new yarn) is over before the next one.
+                window.rest();
+                purl = !purl;
+                let begun = Instant::now();
+                window.harness.key_press(if purl { Key::P } else { Key::K });
+                window.show(|editor| {
+                    let fabric = editor.project().fabric().unwrap();
+                    *fabric.stitches.stitch(FaceId(face))
+                        == if purl { Stitch::purl() } else { Stitch::knit() }
+                });
+                taken += begun.elapsed();
+            }
+            taken
+        });
     });
     group.finish();
 }

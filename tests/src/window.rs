@@ -24,6 +24,7 @@ use stitch_mesh::stitch::Stitch;
 pub struct Window {
     /// The harness.
     pub harness: Harness<'static, Editor>,
+    gpu: Gpu,
     /// Told whenever the window is at rest; dropped with it, which ends the watch.
     watch: Sender<()>,
 }
@@ -51,7 +52,7 @@ impl Window {
     pub fn new(project: Project) -> Self {
         let painter = create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
         let gpu = Gpu::new(&painter.adapter, &painter.device, &painter.queue);
-        let screen = Screen::new(gpu, painter.renderer.clone()).unwrap();
+        let screen = Screen::new(gpu.clone(), painter.renderer.clone()).unwrap();
         let editor = Editor::new(project, None, Some(screen), || ()).unwrap();
         let harness = Harness::builder()
             .with_size([1360.0, 860.0])
@@ -59,7 +60,7 @@ impl Window {
             .with_accessibility_check(false) // at every step; here once, in a test of its own
             .renderer(WgpuTestRenderer::from_render_state(painter))
             .build_ui_state(|ui, editor: &mut Editor| editor.ui(ui), editor);
-        let mut window = Self { harness, watch: watch() };
+        let mut window = Self { harness, gpu, watch: watch() };
         window.rest();
         window
     }
@@ -91,6 +92,15 @@ impl Window {
         self.harness.step();
         // The watch ends only with the program.
         let _ = self.watch.send(());
+    }
+
+    /// Frames until something is so and drawn. No picture is fetched.
+    pub fn show(&mut self, is: impl Fn(&Editor) -> bool) {
+        while !is(self.editor()) {
+            self.harness.step();
+        }
+        self.harness.step();
+        self.gpu.device.poll(egui_wgpu::wgpu::PollType::wait_indefinitely()).unwrap();
     }
 
     /// Clicks a button.

@@ -62,6 +62,8 @@ pub struct Editor {
     pub(super) under: Option<(HalfEdgeId, Vec3)>,
     /// What the marks on the screen were made for; none where they are out of date.
     pub(super) marked: Option<Option<HalfEdgeId>>,
+    /// Whether there are none on the screen.
+    pub(super) no_marks: bool,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     /// Whether the snapshot is not on the screen yet.
     is_new: bool,
@@ -118,6 +120,7 @@ impl Editor {
             drawn: None,
             under: None,
             marked: None,
+            no_marks: true,
             snapshot: None,
             is_new: false,
             shown: None,
@@ -139,6 +142,7 @@ impl Editor {
         panels::status::show(self, ui);
         panels::left::show(self, ui);
         panels::right::show(self, ui);
+        self.load_yarn();
         // Keys and buttons may have gone to another stage: the pointer has to find the faces of that one.
         self.show_news();
         super::viewport::show(self, ui);
@@ -156,6 +160,11 @@ impl Editor {
     /// The newest snapshot of the simulation of this project's yarn.
     pub fn yarn(&self) -> Option<&Snapshot> {
         self.snapshot.as_deref()
+    }
+
+    /// Steps of the relaxation that is on the screen just now.
+    pub fn watched(&self) -> Option<usize> {
+        self.preview.as_ref().map(|p| p.steps)
     }
 
     /// Whether nothing is under way but the simulation.
@@ -229,9 +238,6 @@ impl Editor {
             self.error = view.message.clone().err();
             self.forget_parts(&view.project);
             self.view = view;
-            self.load_yarn();
-        } else if self.shown.is_none() {
-            self.load_yarn(); // the first frame
         }
         let survey = self.session.survey();
         if !Arc::ptr_eq(&survey, &self.survey) {
@@ -268,8 +274,12 @@ impl Editor {
         }
     }
 
-    /// Hands the yarn to the simulation where the net, the scene or the material is another one than before.
+    /// Hands the yarn to the simulation where the net, the scene or the material is another one than before. As long as
+    /// nobody looks at it or lets it move, it need not be ready.
     fn load_yarn(&mut self) {
+        if self.stage != Stage::Yarn && !self.playing {
+            return;
+        }
         let project = &self.view.project;
         let Some(fabric) = &project.fabric else {
             if self.loaded.take().is_some() {
@@ -286,7 +296,7 @@ impl Editor {
                 net: fabric.net.clone(),
                 material: wants.0.clone(),
                 scene: wants.1.clone(),
-                state: (*fabric.state()).clone(),
+                state: fabric.state.clone(),
             });
             self.loaded = Some(fabric.net.clone());
             self.placed = self.view.placed;

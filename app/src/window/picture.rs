@@ -169,7 +169,8 @@ impl Editor {
             let sides = mesh.face_half_edges(mesh.face(half)).filter(|h| !on_edge || *h == half);
             sides.for_each(|h| mark(h, palette::HOVERED, HOVERED_WIDTH));
         }
-        if let Some(screen) = &mut self.screen {
+        let none_before = std::mem::replace(&mut self.no_marks, segments.is_empty());
+        if let Some(screen) = self.screen.as_mut().filter(|_| !(none_before && self.no_marks)) {
             // Marks that could not be shown are not worth a message of their own: the next drawing says why.
             let _ = screen.set_marks(&Lines { segments });
         }

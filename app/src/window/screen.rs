@@ -18,6 +18,8 @@ pub struct Screen {
     viewport: Viewport,
     scene: Scene,
     texture: egui::TextureId,
+    /// What the picture in the texture was drawn for; none where it is out of date.
+    drawn: Option<([u32; 2], Camera)>,
 }
 
 impl Screen {
@@ -30,7 +32,7 @@ impl Screen {
         let viewport = Viewport::new(&gpu, &renderer, [64, 64])?;
         let texture =
             painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
-        Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture })
+        Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture, drawn: None })
     }
 
     /// Replaces all that is shown.
@@ -38,6 +40,7 @@ impl Screen {
     /// # Errors
     /// It is more than the device holds.
     pub fn set(&mut self, drawing: &Drawing) -> Result<()> {
+        self.drawn = None;
         Ok(self.scene.set(&self.gpu, drawing)?)
     }
 
@@ -46,6 +49,7 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_colors(&mut self, faces: &Faces, colors: &[[f32; 3]]) -> Result<()> {
+        self.drawn = None;
         Ok(self.scene.set_colors(&self.gpu, faces, colors)?)
     }
 
@@ -54,6 +58,7 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_faces(&mut self, faces: &Faces) -> Result<()> {
+        self.drawn = None;
         Ok(self.scene.set_faces(&self.gpu, faces)?)
     }
 
@@ -62,6 +67,7 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_marks(&mut self, marks: &Lines) -> Result<()> {
+        self.drawn = None;
         Ok(self.scene.set_marks(&self.gpu, marks)?)
     }
 
@@ -70,6 +76,7 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_yarn(&mut self, yarn: &YarnCurves) -> Result<()> {
+        self.drawn = None;
         Ok(self.scene.set_yarn(&self.gpu, yarn)?)
     }
 
@@ -78,10 +85,12 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_solids(&mut self, solids: &Solids) -> Result<()> {
+        self.drawn = None;
         Ok(self.scene.set_solids(&self.gpu, solids)?)
     }
 
-    /// Draws a picture of `size` pixels; of half that where the processor itself draws and something is `moving`.
+    /// Draws a picture of `size` pixels; of half that where the processor itself draws and something is `moving`. Where nothing
+    /// has changed it is the picture that was drawn last.
     ///
     /// # Errors
     /// No such size.
@@ -96,9 +105,13 @@ impl Screen {
                 self.texture,
             );
         }
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.renderer.draw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
-        self.gpu.queue.submit([encoder.finish()]);
+        let wanted = Some((size, *camera));
+        if self.drawn != wanted {
+            self.drawn = wanted;
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            self.renderer.draw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
+            self.gpu.queue.submit([encoder.finish()]);
+        }
         Ok(self.texture)
     }
 }
