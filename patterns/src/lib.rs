@@ -2,3 +2,4 @@
 
 pub mod alternation;
 pub mod chart;
+pub mod knitspeak;

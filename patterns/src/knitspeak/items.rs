@@ -1,0 +1,359 @@
+//! Reads what is worked in a row: stitches, runs, groups in brackets and the open group between stars.
+
+use super::error::Fault;
+use super::lex::{Kind, Token};
+use super::syntax::{Body, Count, Item, MOST, Reach};
+use super::term::{Crossing, Term, Work};
+use super::vocabulary;
+use std::ops::Range;
+use stitch_mesh::stitch::{Op, Stitch};
+use winnow::combinator::{alt, opt, peek};
+use winnow::error::ParserError;
+use winnow::prelude::*;
+use winnow::stream::{Stream, TokenSlice};
+use winnow::token::any;
+
+/// The rest of the tokens of a text.
+pub(super) type Tokens<'s, 't> = TokenSlice<'s, Token<'t>>;
+
+/// Brackets in brackets at the most; nobody can follow more than three.
+const DEEPEST: usize = 32;
+
+/// Tokens of one name at the most: "sl 1 k 2 tog psso" with its commas has room to spare.
+const LONGEST_NAME: usize = 14;
+
+impl<'s, 't> ParserError<Tokens<'s, 't>> for Fault {
+    type Inner = Self;
+
+    fn from_input(input: &Tokens<'s, 't>) -> Self {
+        Self::new(next_span(input), format!("found {}", found(input)))
+    }
+
+    fn into_inner(self) -> Result<Self, Self> {
+        Ok(self)
+    }
+}
+
+/// Where the next token is; at the end of the text, right behind the last one.
+pub(super) fn next_span(input: &Tokens<'_, '_>) -> Range<usize> {
+    let end = || input.previous_tokens().next().map_or(0, |t| t.span.end);
+    input.first().map_or_else(|| end()..end(), |t| t.span.clone())
+}
+
+/// End of what has been read.
+pub(super) fn read_to(input: &Tokens<'_, '_>) -> usize {
+    input.previous_tokens().next().map_or(0, |t| t.span.end)
+}
+
+fn found(input: &Tokens<'_, '_>) -> String {
+    match input.first().map(|t| t.kind) {
+        None => "the end of the text".to_owned(),
+        Some(Kind::Word(word)) => format!("'{word}'"),
+        Some(Kind::Number(n)) => format!("'{n}'"),
+        Some(Kind::Mark(mark)) => format!("'{}'", mark.escape_debug()),
+    }
+}
+
+/// A fault at the next token.
+pub(super) fn expected<T>(input: &Tokens<'_, '_>, what: &str) -> Result<T, Fault> {
+    Err(Fault::new(next_span(input), format!("found {}, expected {what}", found(input))))
+}
+
+/// One of these words.
+pub(super) fn word<'s, 't: 's>(
+    words: &'static [&'static str],
+) -> impl Parser<Tokens<'s, 't>, &'s Token<'t>, Fault> {
+    any.verify(move |t: &Token<'t>| words.iter().any(|w| t.is(w)))
+}
+
+/// This mark.
+pub(super) fn mark<'s, 't: 's>(mark: char) -> impl Parser<Tokens<'s, 't>, &'s Token<'t>, Fault> {
+    any.verify(move |t: &Token<'t>| t.is_mark(mark))
+}
+
+/// A number.
+pub(super) fn number(input: &mut Tokens<'_, '_>) -> Result<usize, Fault> {
+    any.verify_map(|t: &Token<'_>| if let Kind::Number(n) = t.kind { Some(n) } else { None })
+        .parse_next(input)
+}
+
+const STITCHES: &[&str] = &["st", "sts", "stitch", "stitches"];
+pub(super) const REPEAT: &[&str] = &["repeat", "rep"];
+pub(super) const ROW: &[&str] = &["row", "rows", "round", "rounds", "rnd", "rnds"];
+
+/// Items up to a mark that ends them, or a word that belongs to what surrounds them.
+pub(super) fn items(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Vec<Item>, Fault> {
+    if depth > DEEPEST {
+        return Err(Fault::new(next_span(input), format!("brackets are nested more than {DEEPEST} deep")));
+    }
+    let mut items: Vec<Item> = Vec::new();
+    loop {
+        while opt(alt((mark(','), mark(';')))).parse_next(input)?.is_some() {}
+        opt((word(&["end", "ending"]), opt(word(&["with"])))).parse_next(input)?;
+        let Some(first) = input.first().cloned() else { break };
+        let is_end = matches!(first.kind, Kind::Mark('.' | ']' | ')' | '}'));
+        let is_outer =
+            REPEAT.iter().chain(ROW).any(|w| first.is(w)) || ["all", "every"].iter().any(|w| first.is(w));
+        if is_end || is_outer || peek(count).parse_next(input).is_ok() {
+            break;
+        }
+        if first.is_mark('*') && depth > 0 {
+            break;
+        }
+        let begin = items.first().map_or(first.span.start, |i| i.span.start);
+        let (item, counted) = item(input, depth)?;
+        let goes_on = matches!(item.reach, Reach::ToLast(_));
+        if counted && goes_on && !items.is_empty() {
+            // "K1, p1 to end" repeats all of it, not the last stitch.
+            let (reach, span) = (item.reach, begin..item.span.end);
+            items.push(Item { reach: Reach::Times(1), ..item });
+            items = vec![Item { body: Body::Group(std::mem::take(&mut items)), reach, span }];
+        } else {
+            items.push(item);
+        }
+    }
+    if items.is_empty() { expected(input, "a stitch") } else { Ok(items) }
+}
+
+/// One item, and whether it is a run with a number of its own.
+fn item(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault> {
+    let begin = next_span(input).start;
+    let closing = match input.first().map(|t| t.kind) {
+        Some(Kind::Mark('*')) => return star(input, depth).map(|item| (item, false)),
+        Some(Kind::Mark('[')) => ']',
+        Some(Kind::Mark('(')) => ')',
+        Some(Kind::Mark('{')) => '}',
+        _ => return named(input, depth),
+    };
+    input.next_token();
+    let inner = items(input, depth + 1)?;
+    if opt(mark(closing)).parse_next(input)?.is_none() {
+        return expected(input, &format!("a comma or '{closing}'"));
+    }
+    if opt(in_next_stitch).parse_next(input)?.is_some() {
+        let span = begin..read_to(input);
+        let ops = increase(&inner).ok_or_else(|| {
+            Fault::new(
+                span.clone(),
+                "only knits, purls and yarn-overs, up to 16, can be worked into one stitch",
+            )
+        })?;
+        let term = Term::Work(Work::Stitch(vocabulary::in_one(ops.into_iter())));
+        let reach = opt(reach).parse_next(input)?.unwrap_or(Reach::Times(1));
+        return Ok((Item { body: Body::Term(term), reach, span: begin..read_to(input) }, false));
+    }
+    opt(word(REPEAT)).parse_next(input)?;
+    let Some(reach) = opt(reach).parse_next(input)? else {
+        return expected(input, "how often the group is worked, as in 'twice' or '3 times'");
+    };
+    Ok((Item { body: Body::Group(inner), reach, span: begin..read_to(input) }, false))
+}
+
+/// `* items, repeat from *`, and how far. Without a number it goes on as long as there is room for what follows.
+fn star(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Item, Fault> {
+    let begin = next_span(input).start;
+    input.next_token();
+    let mut inner = items(input, depth + 1)?;
+    let closed = opt(mark('*')).parse_next(input)?.is_some();
+    while opt(alt((mark(','), mark(';')))).parse_next(input)?.is_some() {}
+    if opt(word(REPEAT)).parse_next(input)?.is_none() && !closed {
+        let goes_on = inner.len() == 1 && matches!(inner[0].reach, Reach::ToLast(_));
+        let last = inner.pop().filter(|_| goes_on);
+        return last.map_or_else(|| expected(input, "a comma or 'repeat from *'"), Ok);
+    }
+    opt((opt(word(&["from"])), opt(mark('*')), opt((word(&["to"]), mark('*'))))).parse_next(input)?;
+    let reach = match opt(reach).parse_next(input)? {
+        // What is repeated so often has been worked once already.
+        Some(Reach::Times(n)) if !closed => Reach::Times(n.saturating_add(1)),
+        Some(reach) => reach,
+        None => Reach::Rest,
+    };
+    Ok(Item { body: Body::Group(inner), reach, span: begin..read_to(input) })
+}
+
+/// A stitch by its name, the longest that the vocabulary knows.
+fn named(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault> {
+    let begin = next_span(input).start;
+    let (mut name, mut best) = (String::new(), None);
+    let mut commas = false;
+    for (i, token) in input.iter().take(LONGEST_NAME).enumerate() {
+        match token.kind {
+            Kind::Word(word) => name.push_str(word),
+            Kind::Number(n) => name.push_str(&n.to_string()),
+            Kind::Mark('/') => name.push('/'),
+            Kind::Mark('-') => {}
+            // Only a stitch passed over another is written with commas inside.
+            Kind::Mark(',') => commas = true,
+            Kind::Mark(_) => break,
+        }
+        let whole = !commas || name.ends_with("sso");
+        if whole && matches!(token.kind, Kind::Word(_) | Kind::Number(_)) {
+            best = vocabulary::find(&name).map(|named| (i + 1, named)).or(best);
+        }
+    }
+    // What hangs on to a name without a blank belongs to it: 'k2tgo' is not k2.
+    let hangs_on = |pair: &[Token<'_>]| {
+        pair[0].span.end == pair[1].span.start && matches!(pair[1].kind, Kind::Word(_) | Kind::Number(_))
+    };
+    let length_is = |length: usize| !input.get(length - 1..=length).is_some_and(hangs_on);
+    let Some((length, (mut term, count))) = best.filter(|(length, _)| length_is(*length)) else {
+        return expected_stitch(input);
+    };
+    let whole_word = input.first().is_some_and(|t| t.is("knit") || t.is("purl"));
+    input.next_slice(length);
+    if let Term::Work(Work::Cross(crossing)) = &mut term
+        && input.first().is_some_and(|t| t.is_mark('('))
+        && peek(self::count).parse_next(input).is_err()
+    {
+        strand_behind(input, crossing, depth)?;
+    }
+    let reach = match (opt(reach).parse_next(input)?, count) {
+        (Some(Reach::Times(n)), Some(count)) => Reach::Times(n.saturating_mul(count)),
+        (Some(reach), _) => reach,
+        (None, Some(n)) => Reach::Times(n),
+        (None, None) if whole_word || term == Term::BindOffRest => Reach::ToLast(0),
+        (None, None) => Reach::Times(1),
+    };
+    let span = begin..read_to(input);
+    if reach == Reach::Times(0) {
+        return Err(Fault::new(span, "a stitch worked 0 times is none; expected 1 or more"));
+    }
+    Ok((Item { body: Body::Term(term), reach, span }, count.is_some()))
+}
+
+/// A fault about the whole word that stands where a stitch should.
+fn expected_stitch<T>(input: &Tokens<'_, '_>) -> Result<T, Fault> {
+    let is_part = |t: &&Token<'_>| !matches!(t.kind, Kind::Mark(mark) if mark != '-' && mark != '/');
+    let (mut name, mut span) = (String::new(), next_span(input));
+    span.end = span.start;
+    for token in input.iter().take(LONGEST_NAME).take_while(is_part) {
+        if token.span.start != span.end {
+            break;
+        }
+        match token.kind {
+            Kind::Word(word) => name.push_str(word),
+            Kind::Number(n) => name.push_str(&n.to_string()),
+            Kind::Mark(mark) => name.push(mark),
+        }
+        span.end = token.span.end;
+    }
+    if name.is_empty() {
+        return expected(input, "a stitch");
+    }
+    Err(Fault::new(span, format!("found '{name}', expected a stitch, a cable, '[' or '*'")))
+}
+
+/// `(p1, k1)` after a cable: the stitches of the strand that lies behind, in the order they are worked.
+fn strand_behind(input: &mut Tokens<'_, '_>, crossing: &mut Crossing, depth: usize) -> Result<(), Fault> {
+    let begin = next_span(input).start;
+    input.next_token();
+    let inner = items(input, depth + 1)?;
+    if opt(mark(')')).parse_next(input)?.is_none() {
+        return expected(input, "a comma or ')'");
+    }
+    let place = crossing.behind();
+    let ops =
+        increase(&inner).filter(|ops| ops.len() == place.len() && ops.iter().all(|o| o.make.pulls_through()));
+    let Some(ops) = ops else {
+        let message = format!("expected the {} knits and purls of the strand that lies behind", place.len());
+        return Err(Fault::new(begin..read_to(input), message));
+    };
+    let left_to_right = ops.into_iter().rev().map(|op| vocabulary::in_one([op].into_iter()));
+    crossing.stitches.splice(place, left_to_right);
+    Ok(())
+}
+
+/// What is worked into one stitch, in the order of working.
+fn increase(items: &[Item]) -> Option<Vec<Op>> {
+    let mut ops = Vec::new();
+    for item in items {
+        let (Body::Term(Term::Work(Work::Stitch(Stitch { ops: made, stack }))), Reach::Times(n)) =
+            (&item.body, item.reach)
+        else {
+            return None;
+        };
+        if stack.len() > 1 || made.len() != 1 || n > 16 {
+            return None;
+        }
+        ops.extend(std::iter::repeat_n(made[0], n));
+    }
+    let is_held = ops.iter().any(|op| op.make.pulls_through());
+    (is_held && ops.len() <= 16).then_some(ops)
+}
+
+/// `in next st`, `all into same st`.
+fn in_next_stitch(input: &mut Tokens<'_, '_>) -> Result<(), Fault> {
+    let which = opt(word(&["next", "same", "one", "the"]));
+    (opt(word(&["all"])), word(&["in", "into"]), which, opt(number), word(STITCHES)).void().parse_next(input)
+}
+
+/// How far something is worked: `twice`, `3 times`, `x3`, `to end`, `to last 3 sts`.
+fn reach(input: &mut Tokens<'_, '_>) -> Result<Reach, Fault> {
+    let end = || {
+        (
+            opt(word(&["the"])),
+            word(&["end"]),
+            opt((word(&["of"]), opt(word(&["the"])), alt((word(ROW), word(&["needle"]))))),
+        )
+    };
+    let last = (opt(word(&["the"])), word(&["last"]), opt(number), word(STITCHES));
+    let before = (number, word(STITCHES), word(&["before", "from"]), end());
+    let to = (
+        word(&["to", "until"]),
+        alt((
+            end().value(0),
+            last.map(|t| t.2.unwrap_or(1)),
+            before.map(|t| t.0),
+            (number, opt(word(STITCHES)), word(&["remain", "remains", "rem"])).map(|t| t.0),
+        )),
+    );
+    let more = || opt(word(&["more"]));
+    alt((
+        to.map(|t| Reach::ToLast(t.1)),
+        word(&["across", "around"]).value(Reach::ToLast(0)),
+        (word(&["all"]), opt(word(STITCHES))).value(Reach::ToLast(0)),
+        (word(&["once"]), more()).value(Reach::Times(1)),
+        (word(&["twice"]), more()).value(Reach::Times(2)),
+        (word(&["x"]), number).map(|t| Reach::Times(t.1)),
+        (number, more(), word(&["times", "time"])).map(|t| Reach::Times(t.0)),
+    ))
+    .verify(|reach| !matches!(reach, Reach::Times(0) | Reach::Times(MOST..)))
+    .parse_next(input)
+}
+
+/// `(10 sts)`, `(multiple of 8 sts, plus 1)`, `— 10 sts`.
+pub(super) fn count(input: &mut Tokens<'_, '_>) -> Result<Option<Count>, Fault> {
+    let begin = next_span(input).start;
+    let open = alt((mark('('), mark('['), mark('-'))).parse_next(input)?;
+    let counted = counted(input)?;
+    // "(2 sts inc'd)" and "(2 more sts)" say what has changed, not what there is.
+    let mut changes = false;
+    if !open.is_mark('-') {
+        while let Ok(token) = any::<_, Fault>.verify(|t: &&Token<'_>| !closes(t)).parse_next(input) {
+            changes |= matches!(token.kind, Kind::Word("inc" | "dec" | "increased" | "decreased"));
+        }
+        any.verify(|t: &Token<'_>| closes(t)).parse_next(input)?;
+    }
+    let (multiple_of, number) = counted;
+    Ok((!changes).then(|| Count { multiple_of, number, span: begin..read_to(input) }))
+}
+
+fn closes(token: &Token<'_>) -> bool {
+    matches!(token.kind, Kind::Mark(')' | ']' | '.'))
+}
+
+/// `10 sts`, `multiple of 8 sts plus 1`, `multiple of 8 + 1`.
+pub(super) fn counted(input: &mut Tokens<'_, '_>) -> Result<(Option<usize>, usize), Fault> {
+    let plus = (opt(mark(',')), alt((word(&["plus"]), mark('+'))), number, opt(word(STITCHES))).map(|t| t.2);
+    let multiple = (
+        opt(word(&["a", "any"])),
+        word(&["multiple"]),
+        word(&["of"]),
+        number,
+        opt(word(STITCHES)),
+        opt(plus),
+    )
+        .map(|t| (Some(t.3), t.5.unwrap_or(0)));
+    let exact = (number, word(STITCHES)).map(|t| (None, t.0));
+    alt((multiple, exact)).parse_next(input)
+}
