@@ -7,7 +7,7 @@ use super::term::{Crossing, Term, Work};
 use super::vocabulary;
 use std::ops::Range;
 use stitch_mesh::stitch::{Op, Stitch};
-use winnow::combinator::{alt, opt, peek};
+use winnow::combinator::{alt, opt, peek, repeat};
 use winnow::error::ParserError;
 use winnow::prelude::*;
 use winnow::stream::{Stream, TokenSlice};
@@ -25,8 +25,9 @@ const LONGEST_NAME: usize = 14;
 impl<'s, 't> ParserError<Tokens<'s, 't>> for Fault {
     type Inner = Self;
 
+    /// Most of these are thrown away when the next alternative is tried, so it does not say what was found.
     fn from_input(input: &Tokens<'s, 't>) -> Self {
-        Self::new(next_span(input), format!("found {}", found(input)))
+        Self::new(next_span(input), "")
     }
 
     fn into_inner(self) -> Result<Self, Self> {
@@ -91,6 +92,16 @@ pub(super) fn items(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Vec<Item
         while opt(alt((mark(','), mark(';')))).parse_next(input)?.is_some() {}
         opt((word(&["end", "ending"]), opt(word(&["with"])))).parse_next(input)?;
         let Some(first) = input.first().cloned() else { break };
+        let repeats = REPEAT.iter().any(|w| first.is(w));
+        if repeats && depth == 0 && !items.is_empty() && items.iter().all(is_repeatable) {
+            // "K1, p1, rep to end" without a star.
+            if let Some((_, reach)) = opt((word(REPEAT), reach)).parse_next(input)? {
+                let mut group = all_of(&mut items, reach);
+                group.span.end = read_to(input);
+                items = vec![group];
+                continue;
+            }
+        }
         let is_end = matches!(first.kind, Kind::Mark('.' | ']' | ')' | '}'));
         let is_outer =
             REPEAT.iter().chain(ROW).any(|w| first.is(w)) || ["all", "every"].iter().any(|w| first.is(w));
@@ -100,19 +111,37 @@ pub(super) fn items(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Vec<Item
         if first.is_mark('*') && depth > 0 {
             break;
         }
-        let begin = items.first().map_or(first.span.start, |i| i.span.start);
         let (item, counted) = item(input, depth)?;
-        let goes_on = matches!(item.reach, Reach::ToLast(_));
-        if counted && goes_on && !items.is_empty() {
+        if counted
+            && matches!(item.reach, Reach::ToLast(_))
+            && !items.is_empty()
+            && items.iter().all(is_repeatable)
+        {
             // "K1, p1 to end" repeats all of it, not the last stitch.
-            let (reach, span) = (item.reach, begin..item.span.end);
+            let reach = item.reach;
             items.push(Item { reach: Reach::Times(1), ..item });
-            items = vec![Item { body: Body::Group(std::mem::take(&mut items)), reach, span }];
+            items = vec![all_of(&mut items, reach)];
         } else {
             items.push(item);
         }
     }
     if items.is_empty() { expected(input, "a stitch") } else { Ok(items) }
+}
+
+/// Whether a group that has no sign where it begins can begin before this.
+fn is_repeatable(item: &Item) -> bool {
+    let once = |term: &Term| {
+        let shapes = matches!(term, Term::Work(Work::CastOn(_) | Work::Turn { .. }));
+        shapes || matches!(term, Term::BindOff(_) | Term::BindOffRest)
+    };
+    matches!(item.reach, Reach::Times(_)) && !matches!(&item.body, Body::Term(term) if once(term))
+}
+
+/// All of these items as one group.
+fn all_of(items: &mut Vec<Item>, reach: Reach) -> Item {
+    let ends = items.first().zip(items.last());
+    let span = ends.map_or(0..0, |(first, last)| first.span.start..last.span.end);
+    Item { body: Body::Group(std::mem::take(items)), reach, span }
 }
 
 /// One item, and whether it is a run with a number of its own.
@@ -130,7 +159,7 @@ fn item(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault>
     if opt(mark(closing)).parse_next(input)?.is_none() {
         return expected(input, &format!("a comma or '{closing}'"));
     }
-    if opt(in_next_stitch).parse_next(input)?.is_some() {
+    if let Some(stitches) = opt(in_next_stitches).parse_next(input)? {
         let span = begin..read_to(input);
         let ops = increase(&inner).ok_or_else(|| {
             Fault::new(
@@ -139,7 +168,7 @@ fn item(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault>
             )
         })?;
         let term = Term::Work(Work::Stitch(vocabulary::in_one(ops.into_iter())));
-        let reach = opt(reach).parse_next(input)?.unwrap_or(Reach::Times(1));
+        let reach = opt(reach).parse_next(input)?.unwrap_or(Reach::Times(stitches));
         return Ok((Item { body: Body::Term(term), reach, span: begin..read_to(input) }, false));
     }
     opt(word(REPEAT)).parse_next(input)?;
@@ -281,10 +310,15 @@ fn increase(items: &[Item]) -> Option<Vec<Op>> {
     (is_held && ops.len() <= 16).then_some(ops)
 }
 
-/// `in next st`, `all into same st`.
-fn in_next_stitch(input: &mut Tokens<'_, '_>) -> Result<(), Fault> {
-    let which = opt(word(&["next", "same", "one", "the"]));
-    (opt(word(&["all"])), word(&["in", "into"]), which, opt(number), word(STITCHES)).void().parse_next(input)
+/// `in next st`, `all into same st`, `in each of next 3 sts`: in how many.
+fn in_next_stitches(input: &mut Tokens<'_, '_>) -> Result<usize, Fault> {
+    let which = repeat::<_, _, (), _, _>(0.., word(&["each", "of", "next", "same", "the"]));
+    let stitches = (number, word(STITCHES)).map(|t| t.0);
+    let one = (opt(word(&["one"])), word(STITCHES)).value(1);
+    (opt(word(&["all"])), word(&["in", "into"]), which, alt((stitches, one)))
+        .map(|t| t.3)
+        .verify(|n| (1..MOST).contains(n))
+        .parse_next(input)
 }
 
 /// How far something is worked: `twice`, `3 times`, `x3`, `to end`, `to last 3 sts`.
@@ -310,14 +344,14 @@ fn reach(input: &mut Tokens<'_, '_>) -> Result<Reach, Fault> {
     let more = || opt(word(&["more"]));
     alt((
         to.map(|t| Reach::ToLast(t.1)),
-        word(&["across", "around"]).value(Reach::ToLast(0)),
-        (word(&["all"]), opt(word(STITCHES))).value(Reach::ToLast(0)),
+        (word(&["across", "around"]), opt((opt(word(&["the"])), word(ROW)))).value(Reach::ToLast(0)),
+        (word(&["all"]), opt(number), opt(word(STITCHES))).value(Reach::ToLast(0)),
         (word(&["once"]), more()).value(Reach::Times(1)),
         (word(&["twice"]), more()).value(Reach::Times(2)),
         (word(&["x"]), number).map(|t| Reach::Times(t.1)),
         (number, more(), word(&["times", "time"])).map(|t| Reach::Times(t.0)),
     ))
-    .verify(|reach| !matches!(reach, Reach::Times(0) | Reach::Times(MOST..)))
+    .verify(|reach| !matches!(reach, Reach::Times(0 | MOST..) | Reach::ToLast(MOST..)))
     .parse_next(input)
 }
 

@@ -19,13 +19,16 @@ pub(super) struct Segment<'p> {
     pub open: Option<Open>,
     /// The turn that ends it.
     pub turn: Option<&'p Item>,
+    /// Whether it ends with binding off a number of stitches and has no open group. If one loop less is there than that takes,
+    /// the last of them is fastened off.
+    pub binds_off: bool,
 }
 
 /// An item, and how often it is worked: `None` for the open group.
 pub(super) struct Part<'p> {
     pub item: &'p Item,
     pub times: Option<usize>,
-    /// Binds off the last loop too, which is fastened off.
+    /// Binds off the last loop too, which is fastened off, as the open group before says.
     pub to_the_last: bool,
 }
 
@@ -55,7 +58,8 @@ fn is_turn(item: &Item) -> bool {
 }
 
 fn segment<'p>(items: &'p [Item], turn: Option<&'p Item>) -> Result<Segment<'p>, Fault> {
-    let mut segment = Segment { parts: Vec::new(), uses: 0, makes: 0, leaves: 0, open: None, turn };
+    let mut segment =
+        Segment { parts: Vec::new(), uses: 0, makes: 0, leaves: 0, open: None, turn, binds_off: false };
     // Loops still to be worked, once that is known.
     let mut known: Option<usize> = None;
     for (i, item) in items.iter().enumerate() {
@@ -107,6 +111,9 @@ fn segment<'p>(items: &'p [Item], turn: Option<&'p Item>) -> Result<Segment<'p>,
         segment.parts.push(Part { item, times, to_the_last: false });
     }
     let open = segment.parts.iter().find(|p| p.times.is_none()).map(|p| p.item.span.clone());
+    let last = segment.parts.last().map(|p| (&p.item.body, p.times));
+    segment.binds_off =
+        open.is_none() && turn.is_none() && matches!(last, Some((Body::Term(Term::BindOff(_)), Some(1))));
     match (known, open) {
         (Some(rest @ 1..), Some(span)) if turn.is_none() => {
             let message =

@@ -22,7 +22,7 @@
 //! # Practice
 //! Sides alternate; the first row that names its side settles them, and without one odd rows are on the right side. `BO n sts`
 //! works n + 1 loops: a stitch has to be worked to pass the last one over, and it counts as worked then, not as the first of
-//! what follows. Only where a row ends with it and says that n stitches are left ("to last 3 sts, BO 3 sts") is the last one
+//! what follows. Only where a row ends with it and no more than n stitches are left ("to last 3 sts, BO 3 sts") is the last one
 //! fastened off. `repeat from * 3 times` works the group once and then three times more. "K1, p1 to end" repeats all that the
 //! row has said so far.
 

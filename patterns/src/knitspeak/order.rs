@@ -64,10 +64,12 @@ pub(super) fn order(statements: &[Statement]) -> Result<Order<'_>, Fault> {
         let is_meant = |row: &usize| match all {
             All::Even => row.is_multiple_of(2),
             All::Odd => row % 2 == 1,
+            All::Alternate => row % 2 == from % 2,
             All::On(wanted) => side(*row) == wanted,
         };
-        // A last row of the other kind is followed by one of these.
-        for row in (from..=most + 1).filter(is_meant) {
+        // Where the first row is of another kind, the last one is followed by one of these.
+        let last = if is_meant(&1) { most } else { most + 1 };
+        for row in (from..=last).filter(is_meant) {
             rows.entry(row).or_insert(sentence);
         }
     }

@@ -21,7 +21,11 @@ pub(super) fn statements(lower: &str) -> Result<Vec<Statement>, Fault> {
         if input.is_empty() {
             return Ok(statements);
         }
-        let statement = statement(input)?;
+        let begin = next_span(input);
+        let statement = statement(input).map_err(|fault| match fault.message.is_empty() {
+            true => Fault::new(begin, "this sentence is not KnitSpeak"),
+            false => fault,
+        })?;
         rows += match &statement.what {
             What::Rows { ids, body: RowBody::As(list), .. } => ids.listed.len() + list.len(),
             What::Rows { ids, .. } => ids.listed.len(),
@@ -64,16 +68,19 @@ fn rows(input: &mut Tokens<'_, '_>) -> Result<What, Fault> {
     } else if let Some(name) = opt(word(ROW)).parse_next(input)? {
         round = !(name.is("row") || name.is("rows"));
         ids.listed = listed(input)?;
-        ids.all = opt((opt(mark(',')), word(&["and"]), all)).parse_next(input)?.map(|t| t.2.0);
+        ids.all = opt(and_all).parse_next(input)?;
     } else {
         return expected(input, "which rows, as in 'all WS rows'");
     }
     let first = ids.listed.first().copied();
     let in_row = |fault: Fault| if let Some(row) = first { fault.in_row(row) } else { fault };
     let (side, before) = labels(input, &mut ids).map_err(in_row)?;
+    ids.all = opt(and_all).parse_next(input)?.or(ids.all);
     if opt(mark(':')).parse_next(input)?.is_none() {
         return expected(input, "':' after the rows' numbers").map_err(in_row);
     }
+    let face = opt((mark('('), self::side, mark(')')).map(|t| t.1)).parse_next(input).map_err(in_row)?;
+    let side = side.or(face);
     let body = body(input).map_err(in_row)?;
     let after = ending(input).map_err(in_row)?;
     Ok(What::Rows { ids, round, side, body, count: after.or(before) })
@@ -134,10 +141,15 @@ fn listed(input: &mut Tokens<'_, '_>) -> Result<Vec<usize>, Fault> {
 /// `all even rows`, `every following WS row`.
 fn all(input: &mut Tokens<'_, '_>) -> Result<(All, bool), Fault> {
     let which = alt((word(&["even"]).value(All::Even), word(&["odd"]).value(All::Odd), side.map(All::On)));
-    let other = opt(word(&["other", "following"]));
-    let (_, _, which, _, name) =
-        (word(&["all", "every"]), other, which, opt(word(&["numbered"])), word(ROW)).parse_next(input)?;
+    let named = (opt(word(&["other", "following"])), which, opt(word(&["numbered"]))).map(|t| t.1);
+    let alternate = word(&["other", "alternate"]).value(All::Alternate);
+    let (_, which, name) = (word(&["all", "every"]), alt((named, alternate)), word(ROW)).parse_next(input)?;
     Ok((which, !(name.is("row") || name.is("rows"))))
+}
+
+/// `, and all even rows` after those that are listed.
+fn and_all(input: &mut Tokens<'_, '_>) -> Result<All, Fault> {
+    (opt(mark(',')), word(&["and"]), all).map(|t| t.2.0).parse_next(input)
 }
 
 fn side(input: &mut Tokens<'_, '_>) -> Result<Side, Fault> {

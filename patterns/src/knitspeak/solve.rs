@@ -81,6 +81,9 @@ impl State {
                 (worked.at_0, made.at_0) = (worked.at_0 + uses, made.at_0 + makes);
             }
             (None, _) if segment.turn.is_some() => self.at_least(fixed)?,
+            (None, _) if segment.binds_off && self.left.slope == 0 && self.left.at_0 == fixed - 1 => {
+                (worked.at_0, made.at_0) = (worked.at_0 - 1, made.at_0 - 1);
+            }
             (None, _) => self.settle(fixed)?,
         }
         let rest = Line { at_0: self.left.at_0 - worked.at_0, slope: self.left.slope - worked.slope };

@@ -74,6 +74,8 @@ pub(super) struct Ids {
 pub(super) enum All {
     Even,
     Odd,
+    /// Every second one.
+    Alternate,
     /// Those worked on this side.
     On(Side),
 }

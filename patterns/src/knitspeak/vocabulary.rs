@@ -186,14 +186,15 @@ fn slip(input: &mut &str) -> winnow::Result<(Term, Option<usize>)> {
     Ok((Term::Slip(yarn), count))
 }
 
-/// `BO 3 sts`, `BO rem sts`, `bind off all`.
+/// `BO 3 sts`, `BO rem sts`, `bind off all`, `BO`.
 fn bind_off(input: &mut &str) -> winnow::Result<Term> {
     let rest = alt((
         alt(("allrem", "allremaining", "remaining", "rem", "all")).value(Term::BindOffRest),
         number.map(Term::BindOff),
     ));
-    let (_, term, _) = (alt(("bo", "bindoff", "castoff")), rest, stitches).parse_next(input)?;
-    Ok(term)
+    let how = opt(alt(("loosely", "knitwise", "purlwise", "inpattern", "inpatt")));
+    let (_, term, _, _) = (alt(("bo", "bindoff", "castoff")), opt(rest), stitches, how).parse_next(input)?;
+    Ok(term.unwrap_or(Term::BindOffRest))
 }
 
 /// `CO 5 sts`.

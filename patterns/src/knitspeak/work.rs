@@ -189,8 +189,12 @@ impl Needles {
         for segment in segments {
             let passes = self.passes(segment).map_err(|why| Fault::new(row.span.clone(), why))?;
             let (open_uses, open_makes) = segment.open.map_or((0, 0), |o| (o.uses, o.makes));
-            let (worked, made) =
+            let (mut worked, mut made) =
                 (segment.uses + passes * open_uses, segment.makes + passes.saturating_mul(open_makes));
+            let fastened_off = segment.binds_off && worked == self.left + 1;
+            if fastened_off {
+                (worked, made) = (worked - 1, made - 1);
+            }
             let rest = self.left.saturating_sub(worked);
             self.left = self.waiting.saturating_add(made);
             self.waiting = rest;
@@ -202,6 +206,10 @@ impl Needles {
             }
             for part in &segment.parts {
                 emit_part(part, passes, facing, &mut steps, &mut repeats);
+            }
+            if fastened_off {
+                // The stitch that would be left of the last ones bound off.
+                steps.pop();
             }
             if let Some(turn) = segment.turn {
                 emit(turn, facing, &mut steps);
@@ -216,7 +224,10 @@ impl Needles {
     fn passes(&self, segment: &Segment<'_>) -> Result<usize, String> {
         let (left, fixed) = (self.left, segment.uses + segment.leaves);
         let Some(open) = segment.open else {
-            let fits = if segment.turn.is_some() { fixed <= left } else { fixed == left };
+            let fits = match segment.turn {
+                Some(_) => fixed <= left,
+                None => fixed == left || segment.binds_off && fixed == left + 1,
+            };
             return if fits {
                 Ok(0)
             } else {

@@ -63,7 +63,7 @@ fn list(numbers: &[usize]) -> String {
 /// What is worked in a row, up to the full stop.
 fn sentence(row: &WorkedRow) -> String {
     let names = names(row);
-    let all = |name: &str| !names.is_empty() && names.iter().all(|n| n == name);
+    let all = |name: &str| names.iter().all(|n| n == name);
     let mut text = match row.repeats.first().zip(row.repeats.last()) {
         _ if all("k") => "knit".to_owned(),
         _ if all("p") => "purl".to_owned(),

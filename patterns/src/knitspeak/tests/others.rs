@@ -28,6 +28,9 @@ fn other_words_for_the_same() {
         ("SKPO, k10", "ssk, k10"),
         ("sl 1, k2tog, psso, k9", "sk2p, k9"),
         ("“k2”, k10", "k12"),
+        ("(k1, p1) in each of next 3 sts, k9", "[(k1, p1) in next st] 3 times, k9"),
+        ("BO 3 sts, k1, p1 to end", "BO 3 sts, k1, purl"),
+        ("BO loosely", "BO all sts"),
         ("slip 1 purlwise with yarn in back, k11", "sl1 wyib, k11"),
     ];
     for (theirs, ours) in same {
@@ -41,6 +44,8 @@ fn other_words_for_rows() {
     let ours = as_written("Row 1 (RS): *K1, p1, repeat from *.\nRow 2: Purl.\nRow 3: Knit.\nRow 4: Purl.");
     for theirs in [
         "Row 1 (RS): *K1, p1, rep from *.\nRow 3: Knit.\nAll WS rows: Purl.",
+        "Row 1: *K1, p1, rep from *.\nRow 2 (WS) and all even rows: Purl.\nRow 3: K across row.",
+        "Row 1: K1, p1, rep to end.\nRow 2 and every other row: (WS) Purl.\nRow 3: Knit all 4 sts.",
         "Row 1 RS: *K1, p1, rep from *.\nEvery WS row: purl.\nRow 3: Knit.",
         "ROW 1 (RIGHT SIDE): *K1, p1, rep from *\nRow 2 and all even rows: Purl\nRow 3: Knit",
         "Row 1: *K1, p1, rep from *.\nRow 2 and every following WS row: P.\nRow 3: K.",
@@ -88,6 +93,22 @@ fn a_leaf_that_grows_and_shrinks() {
     assert_eq!(leaf.warnings, []);
     assert_eq!((leaf.cast_on, loops(&leaf)), (17, vec![17, 21, 21, 25, 25, 21, 21, 17]));
     assert_round_trip(&leaf);
+}
+
+#[test]
+fn the_last_stitches_bound_off() {
+    let edge = worked("Row 1: K8.\nRow 2: P4, BO 4 sts.\nRow 3: BO 4 sts.\nRow 4: Knit.", 8);
+    assert_eq!((steps(&edge, 1), loops(&edge)), ("k k k k BO4".to_owned(), vec![8, 4, 0, 0]));
+    assert_eq!(as_written("Row 1: K8.\nRow 2: P4, BO 4 sts.\nRow 3: BO.").cast_on, 8);
+    assert_round_trip(&edge);
+}
+
+#[test]
+fn all_rows_of_a_side() {
+    let numbers = |text: &str| as_written(text).rows.len();
+    assert_eq!(numbers("Row 1 (RS): Knit.\nRow 3: Knit.\nAll WS rows: Purl."), 4);
+    assert_eq!(numbers("Rows 1 and all WS rows: Purl.\nRow 2 (RS): Knit.\nRow 4: Knit."), 4);
+    assert_eq!(numbers("Row 1 (WS) and all WS rows: Purl.\nRow 2: Knit."), 2);
 }
 
 #[test]
