@@ -1,86 +1,22 @@
 //! Reads what is worked in a row: stitches, runs, groups in brackets and the open group between stars.
 
+use super::amounts::{count, in_next_stitches, reach};
 use super::error::Fault;
+use super::grammar::{REPEAT, ROW, Tokens, expected, mark, next_span, read_to, word};
 use super::lex::{Kind, Token};
-use super::syntax::{Body, Count, Item, MOST, Reach};
+use super::syntax::{Body, Item, Reach};
 use super::term::{Crossing, Term, Work};
 use super::vocabulary;
-use std::ops::Range;
 use stitch_mesh::stitch::{Op, Stitch};
-use winnow::combinator::{alt, opt, peek, repeat};
-use winnow::error::ParserError;
+use winnow::combinator::{alt, opt, peek};
 use winnow::prelude::*;
-use winnow::stream::{Stream, TokenSlice};
-use winnow::token::any;
-
-/// The rest of the tokens of a text.
-pub(super) type Tokens<'s, 't> = TokenSlice<'s, Token<'t>>;
+use winnow::stream::Stream;
 
 /// Brackets in brackets at the most; nobody can follow more than three.
 const DEEPEST: usize = 32;
 
-/// Tokens of one name at the most: "sl 1 k 2 tog psso" with its commas has room to spare.
+/// Tokens of one name at the most: "sl 1, k 2 tog, psso" with its commas has room to spare.
 const LONGEST_NAME: usize = 14;
-
-impl<'s, 't> ParserError<Tokens<'s, 't>> for Fault {
-    type Inner = Self;
-
-    /// Most of these are thrown away when the next alternative is tried, so it does not say what was found.
-    fn from_input(input: &Tokens<'s, 't>) -> Self {
-        Self::new(next_span(input), "")
-    }
-
-    fn into_inner(self) -> Result<Self, Self> {
-        Ok(self)
-    }
-}
-
-/// Where the next token is; at the end of the text, right behind the last one.
-pub(super) fn next_span(input: &Tokens<'_, '_>) -> Range<usize> {
-    let end = || input.previous_tokens().next().map_or(0, |t| t.span.end);
-    input.first().map_or_else(|| end()..end(), |t| t.span.clone())
-}
-
-/// End of what has been read.
-pub(super) fn read_to(input: &Tokens<'_, '_>) -> usize {
-    input.previous_tokens().next().map_or(0, |t| t.span.end)
-}
-
-fn found(input: &Tokens<'_, '_>) -> String {
-    match input.first().map(|t| t.kind) {
-        None => "the end of the text".to_owned(),
-        Some(Kind::Word(word)) => format!("'{word}'"),
-        Some(Kind::Number(n)) => format!("'{n}'"),
-        Some(Kind::Mark(mark)) => format!("'{}'", mark.escape_debug()),
-    }
-}
-
-/// A fault at the next token.
-pub(super) fn expected<T>(input: &Tokens<'_, '_>, what: &str) -> Result<T, Fault> {
-    Err(Fault::new(next_span(input), format!("found {}, expected {what}", found(input))))
-}
-
-/// One of these words.
-pub(super) fn word<'s, 't: 's>(
-    words: &'static [&'static str],
-) -> impl Parser<Tokens<'s, 't>, &'s Token<'t>, Fault> {
-    any.verify(move |t: &Token<'t>| words.iter().any(|w| t.is(w)))
-}
-
-/// This mark.
-pub(super) fn mark<'s, 't: 's>(mark: char) -> impl Parser<Tokens<'s, 't>, &'s Token<'t>, Fault> {
-    any.verify(move |t: &Token<'t>| t.is_mark(mark))
-}
-
-/// A number.
-pub(super) fn number(input: &mut Tokens<'_, '_>) -> Result<usize, Fault> {
-    any.verify_map(|t: &Token<'_>| if let Kind::Number(n) = t.kind { Some(n) } else { None })
-        .parse_next(input)
-}
-
-const STITCHES: &[&str] = &["st", "sts", "stitch", "stitches"];
-pub(super) const REPEAT: &[&str] = &["repeat", "rep"];
-pub(super) const ROW: &[&str] = &["row", "rows", "round", "rounds", "rnd", "rnds"];
 
 /// Items up to a mark that ends them, or a word that belongs to what surrounds them.
 pub(super) fn items(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Vec<Item>, Fault> {
@@ -232,7 +168,7 @@ fn named(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault
     input.next_slice(length);
     if let Term::Work(Work::Cross(crossing)) = &mut term
         && input.first().is_some_and(|t| t.is_mark('('))
-        && peek(self::count).parse_next(input).is_err()
+        && peek(super::amounts::count).parse_next(input).is_err()
     {
         strand_behind(input, crossing, depth)?;
     }
@@ -244,6 +180,9 @@ fn named(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault
         (None, None) => Reach::Times(1),
     };
     let span = begin..read_to(input);
+    if term == Term::BindOffRest && reach != Reach::ToLast(0) {
+        return Err(Fault::new(span, "all stitches can be bound off only once, and to the end"));
+    }
     if reach == Reach::Times(0) {
         return Err(Fault::new(span, "a stitch worked 0 times is none; expected 1 or more"));
     }
@@ -308,86 +247,4 @@ fn increase(items: &[Item]) -> Option<Vec<Op>> {
     }
     let is_held = ops.iter().any(|op| op.make.pulls_through());
     (is_held && ops.len() <= 16).then_some(ops)
-}
-
-/// `in next st`, `all into same st`, `in each of next 3 sts`: in how many.
-fn in_next_stitches(input: &mut Tokens<'_, '_>) -> Result<usize, Fault> {
-    let which = repeat::<_, _, (), _, _>(0.., word(&["each", "of", "next", "same", "the"]));
-    let stitches = (number, word(STITCHES)).map(|t| t.0);
-    let one = (opt(word(&["one"])), word(STITCHES)).value(1);
-    (opt(word(&["all"])), word(&["in", "into"]), which, alt((stitches, one)))
-        .map(|t| t.3)
-        .verify(|n| (1..MOST).contains(n))
-        .parse_next(input)
-}
-
-/// How far something is worked: `twice`, `3 times`, `x3`, `to end`, `to last 3 sts`.
-fn reach(input: &mut Tokens<'_, '_>) -> Result<Reach, Fault> {
-    let end = || {
-        (
-            opt(word(&["the"])),
-            word(&["end"]),
-            opt((word(&["of"]), opt(word(&["the"])), alt((word(ROW), word(&["needle"]))))),
-        )
-    };
-    let last = (opt(word(&["the"])), word(&["last"]), opt(number), word(STITCHES));
-    let before = (number, word(STITCHES), word(&["before", "from"]), end());
-    let to = (
-        word(&["to", "until"]),
-        alt((
-            end().value(0),
-            last.map(|t| t.2.unwrap_or(1)),
-            before.map(|t| t.0),
-            (number, opt(word(STITCHES)), word(&["remain", "remains", "rem"])).map(|t| t.0),
-        )),
-    );
-    let more = || opt(word(&["more"]));
-    alt((
-        to.map(|t| Reach::ToLast(t.1)),
-        (word(&["across", "around"]), opt((opt(word(&["the"])), word(ROW)))).value(Reach::ToLast(0)),
-        (word(&["all"]), opt(number), opt(word(STITCHES))).value(Reach::ToLast(0)),
-        (word(&["once"]), more()).value(Reach::Times(1)),
-        (word(&["twice"]), more()).value(Reach::Times(2)),
-        (word(&["x"]), number).map(|t| Reach::Times(t.1)),
-        (number, more(), word(&["times", "time"])).map(|t| Reach::Times(t.0)),
-    ))
-    .verify(|reach| !matches!(reach, Reach::Times(0 | MOST..) | Reach::ToLast(MOST..)))
-    .parse_next(input)
-}
-
-/// `(10 sts)`, `(multiple of 8 sts, plus 1)`, `— 10 sts`.
-pub(super) fn count(input: &mut Tokens<'_, '_>) -> Result<Option<Count>, Fault> {
-    let begin = next_span(input).start;
-    let open = alt((mark('('), mark('['), mark('-'))).parse_next(input)?;
-    let counted = counted(input)?;
-    // "(2 sts inc'd)" and "(2 more sts)" say what has changed, not what there is.
-    let mut changes = false;
-    if !open.is_mark('-') {
-        while let Ok(token) = any::<_, Fault>.verify(|t: &&Token<'_>| !closes(t)).parse_next(input) {
-            changes |= matches!(token.kind, Kind::Word("inc" | "dec" | "increased" | "decreased"));
-        }
-        any.verify(|t: &Token<'_>| closes(t)).parse_next(input)?;
-    }
-    let (multiple_of, number) = counted;
-    Ok((!changes).then(|| Count { multiple_of, number, span: begin..read_to(input) }))
-}
-
-fn closes(token: &Token<'_>) -> bool {
-    matches!(token.kind, Kind::Mark(')' | ']' | '.'))
-}
-
-/// `10 sts`, `multiple of 8 sts plus 1`, `multiple of 8 + 1`.
-pub(super) fn counted(input: &mut Tokens<'_, '_>) -> Result<(Option<usize>, usize), Fault> {
-    let plus = (opt(mark(',')), alt((word(&["plus"]), mark('+'))), number, opt(word(STITCHES))).map(|t| t.2);
-    let multiple = (
-        opt(word(&["a", "any"])),
-        word(&["multiple"]),
-        word(&["of"]),
-        number,
-        opt(word(STITCHES)),
-        opt(plus),
-    )
-        .map(|t| (Some(t.3), t.5.unwrap_or(0)));
-    let exact = (number, word(STITCHES)).map(|t| (None, t.0));
-    alt((multiple, exact)).parse_next(input)
 }

@@ -4,7 +4,7 @@
 //! blanks, capitals and hyphens make no difference to it.
 
 use std::ops::Range;
-use winnow::ascii::{digit1, till_line_ending};
+use winnow::ascii::digit1;
 use winnow::combinator::{alt, repeat};
 use winnow::prelude::*;
 use winnow::stream::LocatingSlice;
@@ -53,7 +53,8 @@ pub(super) fn tokens(lower: &str) -> Vec<Token<'_>> {
 
 fn blank(input: &mut Input<'_>) -> winnow::Result<()> {
     let silent = |c: char| c.is_whitespace() || "\u{feff}\"'“”„‘’`".contains(c);
-    repeat(0.., alt((take_while(1.., silent).void(), ('#', till_line_ending).void()))).parse_next(input)
+    repeat(0.., alt((take_while(1.., silent).void(), ('#', take_while(0.., |c| c != '\n')).void())))
+        .parse_next(input)
 }
 
 fn token<'t>(input: &mut Input<'t>) -> winnow::Result<Token<'t>> {

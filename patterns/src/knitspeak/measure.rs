@@ -65,6 +65,9 @@ fn segment<'p>(items: &'p [Item], turn: Option<&'p Item>) -> Result<Segment<'p>,
     for (i, item) in items.iter().enumerate() {
         let (uses, makes) = size(&item.body)?;
         let fault = |message: String| Err(Fault::new(item.span.clone(), message));
+        if matches!(item.body, Body::Term(Term::Work(Work::Turn { .. }))) {
+            return fault("the work can be turned only once in one place".to_owned());
+        }
         let leave = match item.reach {
             Reach::Times(times) => {
                 let to_the_last = match item.body {

@@ -13,21 +13,23 @@
 //! ```
 //!
 //! # Theory
-//! The text is cut into tokens ([`lex`]), sentences ([`parse`]) and items ([`items`]), and names are looked up
-//! ([`vocabulary`], [`cable`]). [`order`] puts the rows into the order in which they are worked, [`measure`] counts the loops
-//! that each works and makes, [`solve`] finds the cast-ons that fit, and [`work`] works the rows. A wrong-side row is read as
-//! it is worked and turned over stitch by stitch ([`term`]), so that what comes out is always the fabric as seen from the
-//! front. [`write()`] is the way back.
+//! The text is cut into tokens ([`lex`]), sentences ([`parse`]), items ([`items`]) and amounts ([`amounts`]), and names are
+//! looked up ([`vocabulary`], [`cable`]). [`order`] puts the rows into the order in which they are worked, [`measure`] counts
+//! the loops that each works and makes, [`solve`] finds the cast-ons that fit, and [`work`] works the rows. A wrong-side row is
+//! read as it is worked and turned over stitch by stitch ([`term`]), so that what comes out is always the fabric as seen from
+//! the front. [`write()`] is the way back.
 //!
 //! # Practice
 //! Sides alternate; the first row that names its side settles them, and without one odd rows are on the right side. `BO n sts`
 //! works n + 1 loops: a stitch has to be worked to pass the last one over, and it counts as worked then, not as the first of
 //! what follows. Only where a row ends with it and no more than n stitches are left ("to last 3 sts, BO 3 sts") is the last one
 //! fastened off. `repeat from * 3 times` works the group once and then three times more. "K1, p1 to end" repeats all that the
-//! row has said so far.
+//! row has said so far, unless something is open or bound off in it.
 
+mod amounts;
 mod cable;
 mod error;
+mod grammar;
 mod items;
 mod lex;
 mod measure;

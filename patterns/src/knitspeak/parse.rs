@@ -1,9 +1,9 @@
 //! Reads the sentences of a pattern: rows, repeats, and what is cast on.
 
+use super::amounts::{count, counted};
 use super::error::Fault;
-use super::items::{
-    REPEAT, ROW, Tokens, count, counted, expected, items, mark, next_span, number, read_to, word,
-};
+use super::grammar::{REPEAT, ROW, Tokens, expected, mark, next_span, number, read_to, word};
+use super::items::items;
 use super::lex::{Kind, tokens};
 use super::syntax::{All, Body, Count, Ids, Item, MOST, Reach, Repeated, RowBody, Side, Statement, What};
 use winnow::combinator::{alt, opt, peek};

@@ -92,6 +92,14 @@ fn groups_that_cannot_be_worked() {
             "Row 1: [k1, knit] twice.",
             "line 1, column 13, row 1: what goes on as long as there is room cannot stand inside another group",
         ),
+        (
+            "Row 1: BO all twice.",
+            "line 1, column 8, row 1: all stitches can be bound off only once, and to the end",
+        ),
+        (
+            "Row 1: k1, turn twice, k1.",
+            "line 1, column 12, row 1: the work can be turned only once in one place",
+        ),
         ("Row 1: [k99999] 99 times.", "line 1, column 8, row 1: the row has more than 100000 stitches"),
     ] {
         assert_eq!(error(text), line, "{text}");

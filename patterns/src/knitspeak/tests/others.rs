@@ -17,6 +17,7 @@ fn other_words_for_the_same() {
         ("*k1, p1, rep from * 5 more times", "[k1, p1] 6 times"),
         ("*k1, p1, rep from * to last 2 sts, end k1, p1", "[k1, p1] 6 times"),
         ("*k1, p1, rep from * until 2 sts remain, k1, p1", "[k1, p1] 6 times"),
+        ("[k1, p1] across to last 2 sts, k2", "[k1, p1] 5 times, k2"),
         ("Knit across", "Knit"),
         ("K all sts", "Knit"),
         ("K to end of row", "Knit"),
@@ -51,6 +52,8 @@ fn other_words_for_rows() {
         "Row 1: *K1, p1, rep from *.\nRow 2 and every following WS row: P.\nRow 3: K.",
         "Row 1 (RS): *K1, p1, rep from *.\nRows 2–4 even: Purl.\nRow 3: Knit.",
         "Row 1 (RS) (4 sts): *K1, p1, rep from *. (4 sts)\nRows 2 & 4 (WS): Purl.\nRow 3: Knit. — 4 sts",
+        "# by\r hand\r\nRow 1: *K1, p1, rep from *.\r\nRow 2: Purl.\r\nRow 3: Knit.\r\nRow 4: Purl.\r\n",
+        "Row 1: *K1, p1, rep from *. Row 2: Purl. Row 3: Knit. Row 4: Purl.",
         "Cast on 4 sts.\nRow 1: *K1, p1, rep from *.\nRows 2 and 4 (WS): Purl.\nRow 3: Knit.",
         "CO a multiple of 2 sts.\n\n# a note\nRow 1: *K1, p1, rep from *.\nRow 2: Purl.\nRow 3: Knit. # garter?\nRow 4: Repeat row 2.",
     ] {

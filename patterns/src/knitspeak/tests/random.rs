@@ -179,5 +179,5 @@ fn endless_texts_end() {
             let _ = pattern.work(Width::AsWritten);
         }
     }
-    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
 }
