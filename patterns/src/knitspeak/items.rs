@@ -48,17 +48,13 @@ pub(super) fn items(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Vec<Item
             break;
         }
         let (item, counted) = item(input, depth)?;
-        if counted
-            && matches!(item.reach, Reach::ToLast(_))
-            && !items.is_empty()
-            && items.iter().all(is_repeatable)
-        {
+        match (item.reach, counted) {
             // "K1, p1 to end" repeats all of it, not the last stitch.
-            let reach = item.reach;
-            items.push(Item { reach: Reach::Times(1), ..item });
-            items = vec![all_of(&mut items, reach)];
-        } else {
-            items.push(item);
+            (reach @ Reach::ToLast(_), Some(n)) if !items.is_empty() && items.iter().all(is_repeatable) => {
+                items.push(Item { reach: Reach::Times(n), ..item });
+                items = vec![all_of(&mut items, reach)];
+            }
+            _ => items.push(item),
         }
     }
     if items.is_empty() { expected(input, "a stitch") } else { Ok(items) }
@@ -80,11 +76,11 @@ fn all_of(items: &mut Vec<Item>, reach: Reach) -> Item {
     Item { body: Body::Group(std::mem::take(items)), reach, span }
 }
 
-/// One item, and whether it is a run with a number of its own.
-fn item(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault> {
+/// One item, and the number of its own that a run has.
+fn item(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, Option<usize>), Fault> {
     let begin = next_span(input).start;
     let closing = match input.first().map(|t| t.kind) {
-        Some(Kind::Mark('*')) => return star(input, depth).map(|item| (item, false)),
+        Some(Kind::Mark('*')) => return star(input, depth).map(|item| (item, None)),
         Some(Kind::Mark('[')) => ']',
         Some(Kind::Mark('(')) => ')',
         Some(Kind::Mark('{')) => '}',
@@ -105,13 +101,13 @@ fn item(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault>
         })?;
         let term = Term::Work(Work::Stitch(vocabulary::in_one(ops.into_iter())));
         let reach = opt(reach).parse_next(input)?.unwrap_or(Reach::Times(stitches));
-        return Ok((Item { body: Body::Term(term), reach, span: begin..read_to(input) }, false));
+        return Ok((Item { body: Body::Term(term), reach, span: begin..read_to(input) }, None));
     }
     opt(word(REPEAT)).parse_next(input)?;
     let Some(reach) = opt(reach).parse_next(input)? else {
         return expected(input, "how often the group is worked, as in 'twice' or '3 times'");
     };
-    Ok((Item { body: Body::Group(inner), reach, span: begin..read_to(input) }, false))
+    Ok((Item { body: Body::Group(inner), reach, span: begin..read_to(input) }, None))
 }
 
 /// `* items, repeat from *`, and how far. Without a number it goes on as long as there is room for what follows.
@@ -136,8 +132,8 @@ fn star(input: &mut Tokens<'_, '_>, depth: usize) -> Result<Item, Fault> {
     Ok(Item { body: Body::Group(inner), reach, span: begin..read_to(input) })
 }
 
-/// A stitch by its name, the longest that the vocabulary knows.
-fn named(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault> {
+/// A stitch by its name, the longest that the vocabulary knows, and its number.
+fn named(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, Option<usize>), Fault> {
     let begin = next_span(input).start;
     let (mut name, mut best) = (String::new(), None);
     let mut commas = false;
@@ -186,7 +182,7 @@ fn named(input: &mut Tokens<'_, '_>, depth: usize) -> Result<(Item, bool), Fault
     if reach == Reach::Times(0) {
         return Err(Fault::new(span, "a stitch worked 0 times is none; expected 1 or more"));
     }
-    Ok((Item { body: Body::Term(term), reach, span }, count.is_some()))
+    Ok((Item { body: Body::Term(term), reach, span }, count))
 }
 
 /// A fault about the whole word that stands where a stitch should.

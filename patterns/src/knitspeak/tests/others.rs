@@ -10,6 +10,8 @@ fn other_words_for_the_same() {
         ("*k1, p1* repeat to end", "*K1, p1, repeat from *"),
         ("*k1, p1, repeat from * to the end of the row", "*K1, p1, repeat from *"),
         ("K 1, P 1 to end", "*K1, p1, repeat from *"),
+        ("K2, P4 to end", "*K2, p4, repeat from *"),
+        ("k1, p2, yo, k2tog to last 3 sts, k3", "k1, p2, yo, k2tog, k2tog, k2tog, k3"),
         ("[k1, p1] to end", "*K1, p1, repeat from *"),
         ("(k1, p1) rep to end", "*K1, p1, repeat from *"),
         ("(k1, p1) 6 times", "[k1, p1] 6 times"),
