@@ -1,4 +1,5 @@
-//! Stitch patterns: charts of stitches, and laying them over a stitch mesh.
+//! Stitch patterns: charts of stitches and laying them over a stitch mesh, and patterns in the words of knitters.
 
 pub mod alternation;
 pub mod chart;
+pub mod knitspeak;
