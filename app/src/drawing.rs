@@ -7,7 +7,7 @@ use render::{Drawing, Faces, Lines, Polygon, Segment, Solid, Solids, palette};
 use sim_core::{Body, Scene, curves};
 use std::collections::HashMap;
 use stitch_mesh::ids::{EdgeId, FaceId};
-use stitch_mesh::label::{EdgeLabel, LabelledMesh};
+use stitch_mesh::label::{EdgeLabel, LabelledMesh, Row};
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
@@ -131,10 +131,10 @@ fn label_drawing(labelled: &LabelledMesh, shown: Shown<'_>) -> Drawing {
     Drawing { faces: faces(mesh, shown, color), lines: Lines { segments }, ..Drawing::default() }
 }
 
-/// Colours of the faces of a stitch mesh, [face_count]: by kind, odd rows darker.
-pub fn stitch_colors(stitches: &StitchMesh) -> Vec<[f32; 3]> {
+/// Colours of the faces of a stitch mesh with these rows, [face_count]: by kind, odd rows darker.
+pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row]) -> Vec<[f32; 3]> {
     let mut is_odd = vec![false; stitches.mesh().face_count()];
-    for row in stitches.rows().iter().skip(1).step_by(2) {
+    for row in rows.iter().skip(1).step_by(2) {
         row.faces.iter().for_each(|f| is_odd[f.index()] = true);
     }
     // A fabric has few kinds of stitches, so their colours are looked up once each.
@@ -148,7 +148,7 @@ pub fn stitch_colors(stitches: &StitchMesh) -> Vec<[f32; 3]> {
 
 fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
     let mesh = stitches.mesh();
-    let colors = stitch_colors(stitches);
+    let colors = stitch_colors(stitches, &stitches.rows());
     let lines = shown_edges(mesh, shown).map(|e| {
         let wale = stitches.is_wale(mesh.edge_sides(e).0);
         edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })

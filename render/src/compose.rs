@@ -59,7 +59,7 @@ impl Compose {
         inputs: &wgpu::BindGroup,
         picture: &wgpu::TextureView,
     ) {
-        let mut pass = begin_pass(encoder, "compose", Some((picture, None)), None);
+        let mut pass = begin_pass(encoder, "compose", Some((picture, None)), None, false);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, inputs, &[]);
         pass.draw(0..3, 0..1);

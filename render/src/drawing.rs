@@ -35,12 +35,7 @@ impl Faces {
     pub(crate) fn cut(&self, polygon: usize) -> impl Iterator<Item = [usize; 3]> + use<> {
         let n = self.polygons[polygon].vertices.len();
         let other = n == 4 && self.is_cut_from_second(polygon);
-        let count = match n {
-            0..3 => 0,
-            3 | 4 => n - 2,
-            _ => n,
-        };
-        (0..count).map(move |i| match n {
+        (0..triangles(n)).map(move |i| match n {
             3 | 4 => [0, i + 1, i + 2].map(|corner| (corner + usize::from(other)) % n),
             _ => [n, i, (i + 1) % n],
         })
@@ -72,6 +67,15 @@ impl Faces {
     /// The mean of the corners of a polygon [m].
     pub(crate) fn mean(&self, polygon: usize) -> Vec3 {
         self.corners(polygon).sum::<Vec3>() / self.polygons[polygon].vertices.len().max(1) as f32
+    }
+}
+
+/// How many triangles a polygon of so many corners is cut into.
+pub(crate) fn triangles(corners: usize) -> usize {
+    match corners {
+        0..3 => 0,
+        3 | 4 => corners - 2,
+        _ => corners,
     }
 }
 

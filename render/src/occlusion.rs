@@ -80,12 +80,12 @@ impl Occlusion {
     }
 
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, targets: &OcclusionTargets) {
-        let mut pass = begin_pass(encoder, "find hollows", Some((&targets.coarse_view, None)), None);
+        let mut pass = begin_pass(encoder, "find hollows", Some((&targets.coarse_view, None)), None, false);
         pass.set_pipeline(&self.find);
         pass.set_bind_group(0, &targets.depth, &[]);
         pass.draw(0..3, 0..1);
         drop(pass);
-        let mut pass = begin_pass(encoder, "blur hollows", Some((&targets.view, None)), None);
+        let mut pass = begin_pass(encoder, "blur hollows", Some((&targets.view, None)), None, false);
         pass.set_pipeline(&self.blur);
         pass.set_bind_group(0, &targets.depth, &[]);
         pass.set_bind_group(1, &targets.coarse, &[]);

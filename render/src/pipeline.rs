@@ -150,19 +150,20 @@ pub(crate) fn target(
     })
 }
 
-/// Begins a pass that clears its target and its depth.
+/// Begins a pass that clears its target and its depth, or keeps what is in them.
 pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     label: &str,
     color: Option<(&wgpu::TextureView, Option<&wgpu::TextureView>)>,
     depth: Option<(&wgpu::TextureView, f32)>,
+    keep: bool,
 ) -> wgpu::RenderPass<'a> {
     let color = color.map(|(view, resolve_target)| wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target,
         ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            load: if keep { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) },
             store: wgpu::StoreOp::Store,
         },
     });
@@ -171,7 +172,10 @@ pub(crate) fn begin_pass<'a>(
         color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
         depth_stencil_attachment: depth.map(|(view, far)| wgpu::RenderPassDepthStencilAttachment {
             view,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(far), store: wgpu::StoreOp::Store }),
+            depth_ops: Some(wgpu::Operations {
+                load: if keep { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(far) },
+                store: wgpu::StoreOp::Store,
+            }),
             stencil_ops: None,
         }),
         timestamp_writes: None,

@@ -63,7 +63,7 @@ impl Renderer {
             shadow_map: ShadowMap::new(device, shadows),
             occlusion: Occlusion::new(device, samples, if quality == Quality::Still { 8 } else { 4 }),
             compose: Compose::new(device, samples, supersampling),
-            surfaces: SurfacePipelines::new(device, &frame_layout, &lit_frame_layout, samples),
+            surfaces: SurfacePipelines::new(device, &frame_layout, &lit_frame_layout, samples, shadows),
             lines: LinePipeline::new(device, &frame_layout, samples),
             yarn: YarnPipelines::new(gpu, &frame_layout, &lit_frame_layout, samples),
             frame_layout,
@@ -95,7 +95,7 @@ impl Renderer {
             viewport
                 .light
                 .write(&gpu.queue, &Frame { view_projection, eye: lights.key.extend(0.0), ..frame });
-            let mut pass = begin_pass(encoder, "shadows", None, Some((&self.shadow_map.view, 1.0)));
+            let mut pass = begin_pass(encoder, "shadows", None, Some((&self.shadow_map.view, 1.0)), false);
             pass.set_bind_group(0, &viewport.light_frame, &[]);
             self.surfaces.draw_shadow(&mut pass, &scene.faces);
             self.surfaces.draw_shadow(&mut pass, &scene.solids);
@@ -103,7 +103,7 @@ impl Renderer {
         }
 
         let color = (&viewport.color, viewport.resolved.as_ref());
-        let mut pass = begin_pass(encoder, "scene", Some(color), Some((&viewport.depth, 0.0)));
+        let mut pass = begin_pass(encoder, "scene", Some(color), Some((&viewport.depth, 0.0)), false);
         pass.set_bind_group(0, &viewport.lit_frame, &[]);
         self.yarn.draw(gpu, &mut pass, &scene.yarn, camera.scale_at(size));
         self.surfaces.draw_faces(&mut pass, &scene.faces);
@@ -117,6 +117,17 @@ impl Renderer {
         if frame.occlusion_radius > 0.0 {
             self.occlusion.draw(encoder, &viewport.occlusion);
         }
+        self.compose.draw(encoder, &viewport.compose, viewport.view());
+    }
+
+    /// Records the drawing of those faces over a viewport's picture that have other colours than when it was drawn last, with
+    /// the same camera and nothing else changed. Of a large mesh that is far less than all of it. Lines stay in front.
+    pub fn recolor(&self, encoder: &mut wgpu::CommandEncoder, viewport: &Viewport, scene: &Scene) {
+        let color = (&viewport.color, viewport.resolved.as_ref());
+        let mut pass = begin_pass(encoder, "new colours", Some(color), Some((&viewport.depth, 0.0)), true);
+        pass.set_bind_group(0, &viewport.lit_frame, &[]);
+        self.surfaces.draw_changed(&mut pass, &scene.faces);
+        drop(pass);
         self.compose.draw(encoder, &viewport.compose, viewport.view());
     }
 }

@@ -60,6 +60,11 @@ impl Scene {
         self.faces.set_colors(gpu, faces, colors)
     }
 
+    /// Says that what the scene holds now has been drawn.
+    pub fn settle(&mut self) {
+        self.faces.settle();
+    }
+
     /// Replaces the lines.
     pub fn set_lines(&mut self, gpu: &Gpu, lines: &Lines) -> Result<(), RenderError> {
         self.lines.set(gpu, lines)

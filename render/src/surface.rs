@@ -1,9 +1,10 @@
 //! Triangles in flat colours: polygons of meshes, and bodies.
 
 use glam::{Vec3, Vec4};
-use wgpu::CompareFunction::{Greater, Less};
+use std::ops::Range;
+use wgpu::CompareFunction::{GreaterEqual, Less};
 
-use crate::drawing::{Faces, Polygon};
+use crate::drawing::{Faces, Polygon, triangles};
 use crate::light;
 use crate::pipeline::{COLOR_FORMAT, Pipeline, shader};
 use crate::scene::GrowingBuffer;
@@ -22,6 +23,10 @@ pub(crate) struct SurfaceMesh {
     indices: GrowingBuffer,
     /// Number of indices.
     count: u32,
+    /// The colours of polygons.
+    now: Vec<[f32; 3]>,
+    /// Indices of the polygons that have had other colours since all were drawn.
+    changed: Vec<Range<u32>>,
 }
 
 impl SurfaceMesh {
@@ -31,6 +36,8 @@ impl SurfaceMesh {
             colors: GrowingBuffer::new("colours of corners", wgpu::BufferUsages::VERTEX),
             indices: GrowingBuffer::new("triangles", wgpu::BufferUsages::INDEX),
             count: 0,
+            now: Vec::new(),
+            changed: Vec::new(),
         }
     }
 
@@ -50,6 +57,7 @@ impl SurfaceMesh {
             indices.extend(faces.cut(index).flatten().map(|i| first + i as u32));
         }
         self.set(gpu, &shape, &indices)?;
+        self.now.clear();
         self.set_colors(gpu, faces, &Vec::from_iter(faces.polygons.iter().map(|p| p.color)))
     }
 
@@ -60,9 +68,27 @@ impl SurfaceMesh {
             n => n + 1,
         };
         let color = |c: &[f32; 3]| Vec3::from(*c).extend(1.0);
-        let each = faces.polygons.iter().zip(colors);
-        let colors: Vec<Vec4> = each.flat_map(|(p, c)| std::iter::repeat_n(color(c), corners(p))).collect();
+        let each = || faces.polygons.iter().zip(colors);
+        let mut begin = 0;
+        for ((polygon, color), before) in each().zip(&self.now) {
+            let end = begin + 3 * triangles(polygon.vertices.len()) as u32;
+            if color != before {
+                match self.changed.last_mut().filter(|last| last.end == begin) {
+                    Some(last) => last.end = end,
+                    None => self.changed.push(begin..end),
+                }
+            }
+            begin = end;
+        }
+        self.now.clear();
+        self.now.extend_from_slice(colors);
+        let colors: Vec<Vec4> = each().flat_map(|(p, c)| std::iter::repeat_n(color(c), corners(p))).collect();
         self.colors.write(gpu, bytemuck::cast_slice(&colors), gpu.device.limits().max_buffer_size)
+    }
+
+    /// Forgets which polygons have changed: they have been drawn.
+    pub fn settle(&mut self) {
+        self.changed.clear();
     }
 
     /// Replaces the triangles by those of bodies.
@@ -97,26 +123,30 @@ impl SurfacePipelines {
         frame: &wgpu::BindGroupLayout,
         lit_frame: &wgpu::BindGroupLayout,
         samples: u32,
+        shadows: bool,
     ) -> Self {
         let module = shader(device, "surface", &[light::WGSL, include_str!("surface.wgsl")]);
         let buffer = |stride: usize, attributes| {
             let step_mode = wgpu::VertexStepMode::Vertex;
             Some(wgpu::VertexBufferLayout { array_stride: stride as u64, step_mode, attributes })
         };
-        let faces = Pipeline {
-            label: "faces",
+        let solids = Pipeline {
+            label: "solids",
             module: &module,
             vertex: "surface_vertex",
             fragment: Some("surface_fragment"),
             layouts: &[lit_frame],
             vertices: &[buffer(size_of::<[Vec3; 2]>(), &SHAPE), buffer(size_of::<Vec4>(), &COLOR)],
             topology: wgpu::PrimitiveTopology::TriangleList,
-            cull: None,
+            cull: Some(wgpu::Face::Back),
             target: Some(COLOR_FORMAT),
-            depth: Some(Greater),
+            // Equal depths pass: a face is drawn over itself when it changes colour.
+            depth: Some(GreaterEqual),
             samples,
         };
-        let solids = Pipeline { label: "solids", cull: Some(wgpu::Face::Back), ..faces };
+        let [vertex, fragment] =
+            if shadows { ["surface_vertex", "surface_fragment"] } else { ["flat_vertex", "flat_fragment"] };
+        let faces = Pipeline { label: "faces", cull: None, vertex, fragment: Some(fragment), ..solids };
         let shadow = Pipeline {
             label: "surface shadow",
             fragment: None,
@@ -124,7 +154,8 @@ impl SurfacePipelines {
             target: None,
             depth: Some(Less),
             samples: 1,
-            ..faces
+            cull: None,
+            ..solids
         };
         Self { solids: solids.build(device), shadow: shadow.build(device), faces: faces.build(device) }
     }
@@ -143,14 +174,28 @@ impl SurfacePipelines {
         Self::draw_with(&self.shadow, pass, mesh);
     }
 
+    /// Draws the polygons that have changed over what they were.
+    pub fn draw_changed(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
+        Self::draw_ranges(&self.faces, pass, mesh, &mesh.changed);
+    }
+
     fn draw_with(pipeline: &wgpu::RenderPipeline, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
+        Self::draw_ranges(pipeline, pass, mesh, std::slice::from_ref(&(0..mesh.count)));
+    }
+
+    fn draw_ranges(
+        pipeline: &wgpu::RenderPipeline,
+        pass: &mut wgpu::RenderPass,
+        mesh: &SurfaceMesh,
+        ranges: &[Range<u32>],
+    ) {
         let buffers = [&mesh.shape, &mesh.colors, &mesh.indices].map(GrowingBuffer::buffer);
         if let ([Some(shape), Some(colors), Some(indices)], 1..) = (buffers, mesh.count) {
             pass.set_pipeline(pipeline);
             pass.set_vertex_buffer(0, shape.slice(..));
             pass.set_vertex_buffer(1, colors.slice(..));
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.count, 0, 0..1);
+            ranges.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, 0..1));
         }
     }
 }

@@ -277,3 +277,52 @@ fn frame_times() {
         println!("{size:?}, zoom {zoom}: {whole:.1?}, of which the update takes {update:.1?}");
     }
 }
+
+#[test]
+fn new_colours_are_drawn_over_the_old_ones() {
+    let gpu = gpu();
+    let camera = Camera { yaw: 0.4, pitch: 0.3, ..Default::default() };
+    let squares = |colors: [[f32; 3]; 3]| {
+        let places = [Vec3::new(-0.15, 0.0, 0.0), Vec3::new(0.0, 0.05, -0.1), Vec3::new(0.2, 0.1, 0.05)];
+        places.into_iter().zip(colors).map(|(p, c)| square(p, c)).reduce(join).unwrap()
+    };
+    let (before, after) = ([RED, RED, GREEN], [RED, GREEN, RED]);
+    let edge = Segment {
+        ends: [Vec3::new(-0.1, -0.05, -0.1), Vec3::new(0.1, -0.05, -0.1)],
+        color: [0.0; 3],
+        width: 3.0,
+    };
+    for quality in [Quality::Interactive, Quality::Still] {
+        let renderer = Renderer::new(gpu, quality);
+        let viewport = Viewport::new(gpu, &renderer, SIZE).unwrap();
+        let picture = |scene: &Scene, all: bool| {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            if all {
+                renderer.draw(gpu, &mut encoder, &viewport, &camera, scene);
+            } else {
+                renderer.recolor(&mut encoder, &viewport, scene);
+            }
+            gpu.queue.submit([encoder.finish()]);
+            read_back(gpu, viewport.picture()).unwrap()
+        };
+        let mut scene = Scene::new();
+        let faces = squares(before);
+        scene
+            .set(
+                gpu,
+                &Drawing {
+                    faces: faces.clone(),
+                    lines: Lines { segments: vec![edge] },
+                    ..Default::default()
+                },
+            )
+            .unwrap();
+        let old = picture(&scene, true);
+        scene.settle();
+        assert!(picture(&scene, false) == old, "nothing has changed");
+        scene.set_colors(gpu, &faces, &after).unwrap();
+        let over = picture(&scene, false);
+        let whole = picture(&scene, true);
+        assert!(old != whole && over == whole);
+    }
+}

@@ -18,6 +18,7 @@ pub mod lay;
 pub mod marks;
 pub mod mean_value;
 pub mod mesh;
+pub mod needle;
 pub mod obj;
 pub mod patch;
 pub mod pieces;

@@ -98,8 +98,9 @@ impl Window {
     pub fn show(&mut self, is: impl Fn(&Editor) -> bool) {
         while !is(self.editor()) {
             self.harness.step();
+            // A window sleeps until it is woken.
+            std::thread::sleep(Duration::from_millis(1));
         }
-        self.harness.step();
         self.gpu.device.poll(egui_wgpu::wgpu::PollType::wait_indefinitely()).unwrap();
     }
 

@@ -16,7 +16,7 @@ use crate::drawing::Stage;
 use crate::project::Project;
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use render::{Bounds, Camera, Faces, NamedView};
+use render::{Bounds, Camera, Faces, Lines, NamedView};
 use sim_core::{Material, Pin, Scene, SimCommand, SimThread, Snapshot};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -62,8 +62,8 @@ pub struct Editor {
     pub(super) under: Option<(HalfEdgeId, Vec3)>,
     /// What the marks on the screen were made for; none where they are out of date.
     pub(super) marked: Option<Option<HalfEdgeId>>,
-    /// Whether there are none on the screen.
-    pub(super) no_marks: bool,
+    /// The marks on the screen.
+    pub(super) marks: Lines,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     /// Whether the snapshot is not on the screen yet.
     is_new: bool,
@@ -120,7 +120,7 @@ impl Editor {
             drawn: None,
             under: None,
             marked: None,
-            no_marks: true,
+            marks: Lines::default(),
             snapshot: None,
             is_new: false,
             shown: None,

@@ -30,8 +30,9 @@ impl Editor {
         self.preview = None;
         if !same {
             self.show_polygons(stage);
-        } else if let Some(fabric) = fabric {
-            for (polygon, color) in self.faces.polygons.iter_mut().zip(stitch_colors(&fabric.stitches)) {
+        } else if let (Some(fabric), Some(rows)) = (fabric, &self.view.fabric_rows) {
+            let colors = stitch_colors(&fabric.stitches, &rows.rows);
+            for (polygon, color) in self.faces.polygons.iter_mut().zip(colors) {
                 polygon.color = color;
             }
         }
@@ -169,10 +170,13 @@ impl Editor {
             let sides = mesh.face_half_edges(mesh.face(half)).filter(|h| !on_edge || *h == half);
             sides.for_each(|h| mark(h, palette::HOVERED, HOVERED_WIDTH));
         }
-        let none_before = std::mem::replace(&mut self.no_marks, segments.is_empty());
-        if let Some(screen) = self.screen.as_mut().filter(|_| !(none_before && self.no_marks)) {
-            // Marks that could not be shown are not worth a message of their own: the next drawing says why.
-            let _ = screen.set_marks(&Lines { segments });
+        let marks = Lines { segments };
+        if marks != self.marks {
+            if let Some(screen) = &mut self.screen {
+                // Marks that could not be shown are not worth a message of their own: the next drawing says why.
+                let _ = screen.set_marks(&marks);
+            }
+            self.marks = marks;
         }
     }
 

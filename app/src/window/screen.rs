@@ -20,6 +20,8 @@ pub struct Screen {
     texture: egui::TextureId,
     /// What the picture in the texture was drawn for; none where it is out of date.
     drawn: Option<([u32; 2], Camera)>,
+    /// Whether nothing but colours of faces has changed since.
+    recolored: bool,
 }
 
 impl Screen {
@@ -32,7 +34,16 @@ impl Screen {
         let viewport = Viewport::new(&gpu, &renderer, [64, 64])?;
         let texture =
             painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
-        Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture, drawn: None })
+        Ok(Self {
+            gpu,
+            painter,
+            renderer,
+            viewport,
+            scene: Scene::new(),
+            texture,
+            drawn: None,
+            recolored: false,
+        })
     }
 
     /// Replaces all that is shown.
@@ -49,7 +60,7 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_colors(&mut self, faces: &Faces, colors: &[[f32; 3]]) -> Result<()> {
-        self.drawn = None;
+        self.recolored = true;
         Ok(self.scene.set_colors(&self.gpu, faces, colors)?)
     }
 
@@ -106,11 +117,17 @@ impl Screen {
             );
         }
         let wanted = Some((size, *camera));
-        if self.drawn != wanted {
-            self.drawn = wanted;
+        let recolored = std::mem::take(&mut self.recolored);
+        if self.drawn != wanted || recolored {
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            self.renderer.draw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
+            if self.drawn == wanted {
+                self.renderer.recolor(&mut encoder, &self.viewport, &self.scene);
+            } else {
+                self.renderer.draw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
+            }
             self.gpu.queue.submit([encoder.finish()]);
+            self.scene.settle();
+            self.drawn = wanted;
         }
         Ok(self.texture)
     }
