@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 
 /// What is worked into the loops of a needle.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Worked {
+pub enum Item {
     /// A stitch.
     Stitch(Stitch),
     /// Loops cross, and stitches are worked into them where they have come to. The path of the cable is not read.
@@ -31,7 +31,7 @@ pub enum Worked {
     CastOn(usize),
 }
 
-impl Worked {
+impl Item {
     fn uses(&self) -> usize {
         match self {
             Self::Stitch(stitch) => stitch.bottoms(),
@@ -132,8 +132,8 @@ impl Needle {
     ///
     /// # Errors
     /// [`NeedleError`]; the needle is to be dropped then.
-    pub fn work(&mut self, from: usize, what: &[Worked]) -> Result<usize, NeedleError> {
-        let wanted: usize = what.iter().map(Worked::uses).sum();
+    pub fn work(&mut self, from: usize, what: &[Item]) -> Result<usize, NeedleError> {
+        let wanted: usize = what.iter().map(Item::uses).sum();
         let left = self.loops.len() - from.min(self.loops.len());
         if wanted > left {
             return Err(NeedleError::Loops { wanted, left });
@@ -153,15 +153,15 @@ impl Needle {
         };
         for item in what {
             match item {
-                Worked::Stitch(stitch) => row.stitch(stitch)?,
-                Worked::Cross(cable, stitches) => row.cross(cable, stitches)?,
-                Worked::BindOff(n) => row.bind_off(*n),
-                Worked::CastOn(n) => row.cast_on(*n),
+                Item::Stitch(stitch) => row.stitch(stitch)?,
+                Item::Cross(cable, stitches) => row.cross(cable, stitches)?,
+                Item::BindOff(n) => row.bind_off(*n),
+                Item::CastOn(n) => row.cast_on(*n),
             }
         }
         let above = row.close(whole_round);
         let count = above.len();
-        if from > 0 && what.first().is_some_and(|w| matches!(w, Worked::BindOff(_))) {
+        if from > 0 && what.first().is_some_and(|w| matches!(w, Item::BindOff(_))) {
             self.loops[from - 1].open = true;
         }
         self.loops.splice(from..from + wanted, above);
@@ -209,12 +209,12 @@ impl Needle {
 }
 
 /// Loops that something makes.
-fn made(what: &Worked) -> usize {
+fn made(what: &Item) -> usize {
     match what {
-        Worked::Stitch(stitch) => stitch.tops(),
-        Worked::Cross(_, stitches) => stitches.iter().map(Stitch::tops).sum(),
-        Worked::BindOff(_) => 0,
-        Worked::CastOn(n) => *n,
+        Item::Stitch(stitch) => stitch.tops(),
+        Item::Cross(_, stitches) => stitches.iter().map(Stitch::tops).sum(),
+        Item::BindOff(_) => 0,
+        Item::CastOn(n) => *n,
     }
 }
 
@@ -408,12 +408,12 @@ mod tests {
     use crate::lay::lay;
     use crate::unravel::loose_loops;
 
-    fn row(text: &str) -> Vec<Worked> {
+    fn row(text: &str) -> Vec<Item> {
         text.split_whitespace()
             .map(|word| match word.split_at(1) {
-                ("-", n) => Worked::BindOff(n.parse().unwrap()),
-                ("+", n) => Worked::CastOn(n.parse().unwrap()),
-                _ => Worked::Stitch(word.parse().unwrap()),
+                ("-", n) => Item::BindOff(n.parse().unwrap()),
+                ("+", n) => Item::CastOn(n.parse().unwrap()),
+                _ => Item::Stitch(word.parse().unwrap()),
             })
             .collect()
     }
@@ -484,7 +484,7 @@ mod tests {
     fn what_the_mesh_cannot_hold_is_refused() {
         let mut needle = Needle::cast_on(4, false, StitchSize::of_width(3e-3)).unwrap();
         assert_eq!(needle.work(0, &row("k k k k k")), Err(NeedleError::Loops { wanted: 5, left: 4 }));
-        let cross = Worked::Cross(Cable::cross(Vec::new(), 1, 1, true), vec![Stitch::knit(); 2]);
+        let cross = Item::Cross(Cable::cross(Vec::new(), 1, 1, true), vec![Stitch::knit(); 2]);
         assert_eq!(needle.work(0, &[cross]), Err(NeedleError::Crossing));
         needle.work(2, &row("k k")).unwrap();
         assert_eq!(needle.work(0, &row("k d12k k")), Err(NeedleError::Apart));

@@ -32,7 +32,7 @@ pub struct Warning {
 
 /// A fault in a text, before it has a line and a column.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     pub span: Range<usize>,
     pub row: Option<usize>,
     pub message: String,

@@ -52,6 +52,8 @@ pub use work::{Step, Worked, WorkedRow};
 pub use write::write;
 
 use error::Lines;
+
+pub(crate) use error::Fault;
 use syntax::Statement;
 use winnow::ascii::{dec_uint, space0};
 use winnow::combinator::preceded;
@@ -88,6 +90,11 @@ impl Pattern {
         let statements = parse::statements(&text.to_ascii_lowercase()).map_err(|fault| lines.error(fault))?;
         order::order(&statements).map_err(|fault| lines.error(fault))?;
         Ok(Self { statements, check: check_line(text), lines })
+    }
+
+    /// A fault found later, with its line and column.
+    pub(crate) fn error(&self, fault: Fault) -> KnitSpeakError {
+        self.lines.error(fault)
     }
 
     /// Works the rows.
