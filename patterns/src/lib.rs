@@ -4,3 +4,4 @@ pub mod alternation;
 pub mod chart;
 pub mod knit;
 pub mod knitspeak;
+pub mod tile;

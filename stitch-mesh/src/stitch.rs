@@ -119,6 +119,16 @@ impl Stitch {
         self.ops.is_empty() || self.ops.iter().any(|op| op.make != Make::YarnOver)
     }
 
+    /// What it is in a mirror: loops and stack the other way round, twists the other way.
+    pub fn mirrored(&self) -> Self {
+        let last = self.bottoms().saturating_sub(1) as u8;
+        let mut mirrored = self.clone();
+        mirrored.ops.reverse();
+        mirrored.ops.iter_mut().for_each(|op| op.twist = -op.twist);
+        mirrored.stack.iter_mut().for_each(|b| *b = last - *b);
+        mirrored
+    }
+
     /// What no yarn can do, if the stitch asks for it.
     fn fault(&self) -> Option<&'static str> {
         if !self.holds() && self.bottoms() > 1 {

@@ -12,10 +12,13 @@
 
 mod course;
 mod draft;
+mod reknit;
 mod reshape;
 #[cfg(test)]
 mod tests;
 mod wale;
+
+pub use reknit::Block;
 
 use crate::ids::{FaceId, VertexId};
 use crate::marks::MarkError;
@@ -172,6 +175,24 @@ pub enum EditError {
     /// More loops than can be worked together.
     #[error("stitch {0} would work more than {MOST_BOTTOMS} loops together")]
     TooManyBottoms(FaceId),
+    /// Rows of different lengths, or none.
+    #[error("the stitches to be knitted anew do not make a block")]
+    NotABlock,
+    /// A stitch that makes more loops or fewer.
+    #[error("stitch {0} does not join one loop to one: only plain stitches can be knitted anew in blocks")]
+    NotPlain(FaceId),
+    /// A row that does not fit the one below, or the highest one what lies above.
+    #[error("row {row} of the pattern works {worked} loops and makes {made}, where there are {loops}")]
+    Row {
+        /// The row of the pattern, from 0.
+        row: usize,
+        /// Loops that it works.
+        worked: usize,
+        /// Loops that it makes.
+        made: usize,
+        /// Loops that there are.
+        loops: usize,
+    },
     /// The faces would not make a mesh.
     #[error("the fabric would not hold together: {0}")]
     Mesh(#[from] MeshError),

@@ -165,7 +165,7 @@ impl Patch {
         let last = self.rows.first().map_or(0, ends);
         let row = |r: &PatchRow| {
             let stitches = r.stitches.iter().rev().map(|s| {
-                let mirror = |s: &PatchStitch| PatchStitch { stitch: mirrored(&s.stitch), color: s.color };
+                let mirror = |s: &PatchStitch| PatchStitch { stitch: s.stitch.mirrored(), color: s.color };
                 s.as_ref().map(mirror)
             });
             PatchRow { begins: last.wrapping_sub(ends(r)), stitches: stitches.collect() }
@@ -278,15 +278,6 @@ impl Patch {
         }
         Some(path)
     }
-}
-
-fn mirrored(stitch: &Stitch) -> Stitch {
-    let last = stitch.bottoms().saturating_sub(1) as u8;
-    let mut mirrored = stitch.clone();
-    mirrored.ops.reverse();
-    mirrored.ops.iter_mut().for_each(|op| op.twist = -op.twist);
-    mirrored.stack.iter_mut().for_each(|b| *b = last - *b);
-    mirrored
 }
 
 /// The selected face of a row that has none to its left.

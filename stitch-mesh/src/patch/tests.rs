@@ -45,7 +45,7 @@ fn a_mirrored_patch_crosses_the_other_way() {
     assert_eq!(cable.path, [9, 10, 11, 12].map(VertexId));
     assert_eq!((&cable.strands[..], &cable.front[..]), (&[2, 1][..], &[0, 1][..]));
     let decrease: Stitch = "d213kyp1".parse().unwrap();
-    assert_eq!(mirrored(&decrease).to_string(), "d231p-1yk");
+    assert_eq!(decrease.mirrored().to_string(), "d231p-1yk");
 }
 
 #[test]
