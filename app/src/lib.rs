@@ -24,3 +24,4 @@ pub mod relax;
 pub mod scenes;
 pub mod sheet;
 pub mod window;
+pub mod written;

@@ -3,6 +3,7 @@
 mod demo;
 mod interrupt;
 mod simulate;
+mod written;
 
 use crate::command::{Command, read_script};
 use crate::document::Document;
@@ -25,7 +26,7 @@ use stitch_mesh::obj::Unit;
 #[derive(Parser)]
 #[command(name = "purlwise", version, args_conflicts_with_subcommands = true)]
 struct Arguments {
-    /// What to open in the window: a project (.purl) or a mesh (.obj, in metres)
+    /// What to open in the window: a project (.purl), a mesh (.obj, in metres) or a written pattern (.ks)
     file: Option<PathBuf>,
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -123,6 +124,38 @@ enum Verb {
         project: PathBuf,
         #[arg(short)]
         output: PathBuf,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Knits a flat piece, or a tube, from a written pattern; of a folder all its patterns
+    Swatch {
+        pattern: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        #[command(flatten)]
+        extent: written::Extent,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Repeats a written pattern over a fabric
+    Tile {
+        project: PathBuf,
+        pattern: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        #[command(flatten)]
+        place: written::Where,
+        #[command(flatten)]
+        print: Output,
+    },
+    /// Writes knitting instructions
+    Instructions {
+        project: PathBuf,
+        #[arg(short)]
+        output: Option<PathBuf>,
+        /// First and last row, from 0, as in 4..19; all rows if absent
+        #[arg(long, value_name = "A..B", value_parser = written::parse_rows)]
+        rows: Option<[usize; 2]>,
         #[command(flatten)]
         print: Output,
     },
@@ -283,6 +316,15 @@ fn run(arguments: Arguments) -> Result<()> {
             let facts = json!({"file": output, "yarns": curves.curves.len(), "points": points});
             print.print(&facts, &format!("{} yarns, {points} points", curves.curves.len()));
             Ok(())
+        }
+        Verb::Swatch { pattern, output, extent, print } => {
+            written::swatches(&pattern, &extent, &output, print)
+        }
+        Verb::Tile { project, pattern, output, place, print } => {
+            written::tile(&project, &pattern, place, &output, print)
+        }
+        Verb::Instructions { project, output, rows, print } => {
+            written::instructions(&project, rows, output.as_deref(), print)
         }
         Verb::Stitches { output } => {
             let bar = interrupt::step_counter("swatches")?;

@@ -17,6 +17,7 @@ pub use script::{read_script, write_script};
 use crate::project::Project;
 use crate::relax::{Watch, relax_mesh, unwatched};
 use anyhow::{Context, Result, bail};
+use patterns::tile::Layout;
 use serde::{Deserialize, Serialize};
 use sim_core::mesh_relax::RelaxParams;
 use sim_core::{Material, Scene};
@@ -164,6 +165,31 @@ pub enum Command {
         /// The patch.
         patch: Patch,
     },
+    /// Knits a swatch of a written pattern in place of everything.
+    Import {
+        /// The pattern in KnitSpeak.
+        text: String,
+        /// Stitches to cast on; as the pattern says, or twice its repeat, if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        cast_on: Option<usize>,
+        /// Repeats side by side and above each other, instead.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        repeats: Option<[usize; 2]>,
+    },
+    /// Repeats a written pattern over the fabric.
+    Tile {
+        /// The pattern in KnitSpeak.
+        text: String,
+        /// First and last row, from 0; all rows if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rows: Option<[usize; 2]>,
+        /// The faces; all of these rows if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        faces: Option<Vec<u32>>,
+        /// How repeats lie beside each other.
+        #[serde(default)]
+        layout: Layout,
+    },
     /// Splits a course edge: one more loop for the stitch below and the stitch above.
     SplitCourse {
         /// The edge.
@@ -277,6 +303,10 @@ impl Command {
             Self::Dye { faces, color } => stitches::dye(project, faces, *color)?,
             Self::DyeRows { rows, color } => stitches::dye_rows(project, *rows, *color)?,
             Self::Paste { at, patch } => stitches::paste(project, *at, patch)?,
+            Self::Import { text, cast_on, repeats } => structure::import(project, text, *cast_on, *repeats)?,
+            Self::Tile { text, rows, faces, layout } => {
+                survivors = structure::tile(project, text, *rows, faces.as_deref(), *layout)?;
+            }
             Self::SplitCourse { edge } => survivors = structure::split_course(project, *edge)?,
             Self::CollapseCourse { edge } => survivors = structure::collapse_course(project, *edge)?,
             Self::AddWale { face, edge } => survivors = structure::add_wale(project, *face, *edge)?,

@@ -1,6 +1,7 @@
 //! Names of commands, as the history shows them.
 
 use super::Command;
+use crate::written::title;
 use stitch_mesh::edit::Way;
 use stitch_mesh::label::EdgeLabel;
 
@@ -61,6 +62,8 @@ impl Command {
                 let count = patch.rows.iter().map(|r| r.stitches.iter().flatten().count()).sum();
                 format!("Paste {}", many(count, "stitch"))
             }
+            Self::Import { text, .. } => format!("Knit {}", title(text)),
+            Self::Tile { text, .. } => format!("Tile {}", title(text)),
             Self::SplitCourse { .. } => "Split course edge".into(),
             Self::CollapseCourse { .. } => "Collapse course edge".into(),
             Self::AddWale { .. } => "Add wale edge".into(),

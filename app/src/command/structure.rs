@@ -2,15 +2,18 @@
 
 use super::pins;
 use crate::project::{Fabric, Project};
+use crate::written::{swatch, tiled};
 use anyhow::Result;
-use stitch_mesh::edit::{EditError, Edited, End, Survivors, Way};
+use patterns::knitspeak::Width;
+use patterns::tile::Layout;
+use stitch_mesh::edit::{Edited, End, Survivors, Way};
 use stitch_mesh::ids::{FaceId, VertexId};
 use stitch_mesh::stitch_mesh::StitchMesh;
 
 /// Edits the faces and lays the yarn again.
 fn reshape(
     project: &mut Project,
-    edit: impl FnOnce(&StitchMesh) -> Result<Edited, EditError>,
+    edit: impl FnOnce(&StitchMesh) -> Result<Edited>,
 ) -> Result<Option<Survivors>> {
     let before = project.clone();
     let from = before.fabric()?;
@@ -25,19 +28,19 @@ fn reshape(
 }
 
 pub(super) fn split_course(project: &mut Project, edge: [u32; 2]) -> Result<Option<Survivors>> {
-    reshape(project, |s| s.split_course(edge.map(VertexId)))
+    reshape(project, |s| Ok(s.split_course(edge.map(VertexId))?))
 }
 
 pub(super) fn collapse_course(project: &mut Project, edge: [u32; 2]) -> Result<Option<Survivors>> {
-    reshape(project, |s| s.collapse_course(edge.map(VertexId)))
+    reshape(project, |s| Ok(s.collapse_course(edge.map(VertexId))?))
 }
 
 pub(super) fn add_wale(project: &mut Project, face: u32, edge: [u32; 2]) -> Result<Option<Survivors>> {
-    reshape(project, |s| s.add_wale(FaceId(face), edge.map(VertexId)))
+    reshape(project, |s| Ok(s.add_wale(FaceId(face), edge.map(VertexId))?))
 }
 
 pub(super) fn remove_wale(project: &mut Project, edge: [u32; 2]) -> Result<Option<Survivors>> {
-    reshape(project, |s| s.remove_wale(edge.map(VertexId)))
+    reshape(project, |s| Ok(s.remove_wale(edge.map(VertexId))?))
 }
 
 pub(super) fn shift_wale(
@@ -46,5 +49,31 @@ pub(super) fn shift_wale(
     end: End,
     to: Way,
 ) -> Result<Option<Survivors>> {
-    reshape(project, |s| s.shift_wale(edge.map(VertexId), end, to))
+    reshape(project, |s| Ok(s.shift_wale(edge.map(VertexId), end, to)?))
+}
+
+pub(super) fn tile(
+    project: &mut Project,
+    text: &str,
+    rows: Option<[usize; 2]>,
+    faces: Option<&[u32]>,
+    layout: Layout,
+) -> Result<Option<Survivors>> {
+    let tiled = tiled(project, text, rows, faces, layout)?;
+    reshape(project, |_| Ok((tiled.stitches, tiled.survivors)))
+}
+
+pub(super) fn import(
+    project: &mut Project,
+    text: &str,
+    cast_on: Option<usize>,
+    repeats: Option<[usize; 2]>,
+) -> Result<()> {
+    let (width, high) = match (cast_on, repeats) {
+        (Some(n), _) => (Width::CastOn(n), 1),
+        (None, Some([wide, high])) => (Width::Repeats(wide), high),
+        (None, None) => (Width::AsWritten, 1),
+    };
+    *project = swatch(text, width, high)?.0;
+    Ok(())
 }

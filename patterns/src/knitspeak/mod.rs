@@ -51,6 +51,8 @@ pub use term::{Crossing, Work};
 pub use work::{Step, Worked, WorkedRow};
 pub use write::write;
 
+pub(crate) use write::has_name;
+
 use error::Lines;
 
 pub(crate) use error::Fault;

@@ -104,7 +104,7 @@ fn names(row: &WorkedRow) -> Vec<String> {
     let mut steps = row.steps.iter().peekable();
     while let Some(step) = steps.next() {
         let name = match step.what.facing(side) {
-            Work::Stitch(stitch) => stitch_name(&stitch, side),
+            Work::Stitch(stitch) => stitch_name(&stitch, side).unwrap_or_else(|| stitch.to_string()),
             Work::Cross(crossing) => crossing.name(name_of).unwrap_or_else(|| "a cable".to_owned()),
             Work::CastOn(n) => format!("CO {}", counted(n)),
             Work::Turn { wrapped } => {
@@ -131,15 +131,23 @@ fn counted(n: usize) -> String {
     if n == 1 { "1 st".to_owned() } else { format!("{n} sts") }
 }
 
-fn stitch_name(stitch: &Stitch, side: Side) -> String {
+/// Whether a knitter can be told to work something with this side facing.
+pub(crate) fn has_name(work: &Work, side: Side) -> bool {
+    match work.facing(side) {
+        Work::Stitch(stitch) => stitch_name(&stitch, side).is_some(),
+        Work::Cross(crossing) => crossing.name(name_of).is_some(),
+        _ => true,
+    }
+}
+
+fn stitch_name(stitch: &Stitch, side: Side) -> Option<String> {
     if let Some(name) = name_of(stitch) {
-        return name;
+        return Some(name);
     }
     match &stitch.ops[..] {
-        [Op { make: Make::Slip, twist: 0 }] => match side {
-            Side::Right => "sl1 wyib".to_owned(),
-            Side::Wrong => "sl1 wyif".to_owned(),
-        },
+        [Op { make: Make::Slip, twist: 0 }] => {
+            Some(if side == Side::Right { "sl1 wyib" } else { "sl1 wyif" }.to_owned())
+        }
         ops if stitch.bottoms() == 1 && ops.len() > 1 => {
             let single =
                 |op: &Op| name_of(&Stitch { ops: [*op].into_iter().collect(), stack: stitch.stack.clone() });
@@ -148,9 +156,9 @@ fn stitch_name(stitch: &Stitch, side: Side) -> String {
                 ops.iter().rev().map(|op| yarn_over(op).or_else(|| single(op))).collect();
             let numbered = |name: String| if name.len() == 1 { name + "1" } else { name };
             let list = |names: Vec<String>| names.into_iter().map(numbered).collect::<Vec<_>>().join(", ");
-            worked.map_or_else(|| stitch.to_string(), |names| format!("({}) in next st", list(names)))
+            worked.map(|names| format!("({}) in next st", list(names)))
         }
-        _ => stitch.to_string(),
+        _ => None,
     }
 }
 

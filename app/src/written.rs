@@ -1,0 +1,125 @@
+//! Written patterns and projects: a swatch of a pattern, a pattern tiled over a fabric, instructions for a fabric.
+
+use crate::project::{Fabric, Project};
+use anyhow::{Context, Result, bail};
+use patterns::instructions::instructions;
+use patterns::knit::knit;
+use patterns::knitspeak::{Pattern, Width, Worked, WorkedRow, write};
+use patterns::tile::{Layout, Tiled, tile};
+use serde::Serialize;
+use std::collections::HashSet;
+use stitch_mesh::edge_counts::StitchSize;
+use stitch_mesh::ids::FaceId;
+use stitch_mesh::label::Row;
+
+/// Width of the stitches of a swatch [m]: hand-knitting yarn on 4 mm needles.
+pub const SWATCH_STITCH_WIDTH: f64 = 4.5e-3;
+
+/// Figures of a swatch, as scripts read them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct SwatchFacts {
+    /// Stitches cast on.
+    pub cast_on: usize,
+    /// Rows or rounds.
+    pub rows: usize,
+    /// Most stitches between two of them.
+    pub most_stitches: usize,
+    /// What is doubtful in the text, a line each.
+    pub warnings: Vec<String>,
+}
+
+/// A piece knitted from a written pattern, worked `high` times over its rows, as a project of its own.
+///
+/// # Errors
+/// Where the text is wrong, or what a stitch mesh cannot hold of it.
+pub fn swatch(text: &str, width: Width, high: usize) -> Result<(Project, SwatchFacts)> {
+    let pattern = Pattern::read(text)?;
+    let worked = repeated(pattern.work(width)?, high)?;
+    let size = StitchSize::of_width(SWATCH_STITCH_WIDTH);
+    let stitches = knit(&pattern, &worked, size)?;
+    let mut project = Project::new(stitches.mesh().clone(), size);
+    project.fabric = Some(Fabric::new(stitches));
+    let facts = SwatchFacts {
+        cast_on: worked.cast_on,
+        rows: worked.rows.len(),
+        most_stitches: worked.most_stitches(),
+        warnings: worked.warnings.iter().map(ToString::to_string).collect(),
+    };
+    Ok((project, facts))
+}
+
+/// The name of a pattern: its first line, if that is a comment.
+pub fn title(text: &str) -> &str {
+    let first = text.lines().next().and_then(|line| line.strip_prefix('#')).map(str::trim);
+    first.filter(|name| !name.is_empty() && !name.starts_with("check:")).unwrap_or("a written pattern")
+}
+
+/// A pattern worked several times over its rows.
+fn repeated(worked: Worked, times: usize) -> Result<Worked> {
+    let count = worked.rows.len();
+    match times {
+        0 => bail!("a pattern has to be worked once at least"),
+        1 => return Ok(worked),
+        _ if count % 2 == 1 && !worked.in_the_round => bail!(
+            "the pattern has {count} rows, so its second repeat would begin on the other side: only patterns with an even number \
+             of rows can be repeated"
+        ),
+        _ => {}
+    }
+    let (begins, ends) = (worked.cast_on, worked.rows.last().map_or(0, |row| row.loops));
+    if begins != ends {
+        bail!(
+            "the pattern begins with {begins} stitches and ends with {ends}, so it cannot be repeated upwards"
+        );
+    }
+    let rows: Vec<WorkedRow> = worked.rows.iter().cycle().take(count * times).cloned().collect();
+    Ok(Worked { rows, ..worked })
+}
+
+/// The part of a fabric that a region asks for: rows from the first to the last, and of them the given faces; all without it.
+fn region(all: &[Row], rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Result<HashSet<FaceId>> {
+    let [first, last] = rows.unwrap_or([0, all.len().saturating_sub(1)]);
+    let rows = all.get(first..=last).with_context(|| {
+        format!("there are no rows {first}–{last}: the fabric has rows 0–{}", all.len().saturating_sub(1))
+    })?;
+    let within: HashSet<FaceId> = rows.iter().flat_map(|row| row.faces.iter().copied()).collect();
+    let Some(faces) = faces else { return Ok(within) };
+    let chosen = faces.iter().copied().map(FaceId).filter(|f| within.contains(f));
+    Ok(chosen.collect())
+}
+
+/// A pattern tiled over a fabric, or over some of its rows and faces.
+///
+/// # Errors
+/// The pattern cannot be read, or finds no room.
+pub fn tiled(
+    project: &Project,
+    text: &str,
+    rows: Option<[usize; 2]>,
+    faces: Option<&[u32]>,
+    layout: Layout,
+) -> Result<Tiled> {
+    let stitches = &project.fabric()?.stitches;
+    let all = stitches.rows();
+    let region = region(&all, rows, faces)?;
+    Ok(tile(stitches, &all, &region, &Pattern::read(text)?, layout)?)
+}
+
+/// Instructions for a fabric, or for some of its rows.
+///
+/// # Errors
+/// Which stitch cannot be knitted by hand, and why.
+pub fn told(project: &Project, rows: Option<[usize; 2]>) -> Result<String> {
+    let stitches = &project.fabric()?.stitches;
+    let all = stitches.rows();
+    let [first, last] = rows.unwrap_or([0, all.len().saturating_sub(1)]);
+    let chosen = all.get(first..=last).with_context(|| format!("there are no rows {first}–{last}"))?;
+    let worked = instructions(stitches, chosen)?;
+    let left = worked.rows.last().map_or(worked.cast_on, |row| row.loops);
+    let joined = if worked.in_the_round { " and join in the round" } else { "" };
+    Ok(format!(
+        "# Cast on {} stitches{joined}.\n{}# Bind off {left} stitches.\n",
+        worked.cast_on,
+        write(&worked)
+    ))
+}
