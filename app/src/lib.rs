@@ -17,6 +17,7 @@ pub mod drawing;
 pub mod export;
 pub mod files;
 pub mod inspect;
+pub mod library;
 pub mod preview;
 pub mod problems;
 pub mod project;

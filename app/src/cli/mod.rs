@@ -10,7 +10,7 @@ use crate::document::Document;
 use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
 use crate::project::{DEFAULT_STITCH_WIDTH, Project};
-use crate::{export, files, sheet};
+use crate::{export, files, library, sheet};
 use anyhow::{Context, Result, bail};
 use clap::{Parser, Subcommand, ValueEnum};
 use render::{Camera, Gpu, NamedView, render_image};
@@ -162,6 +162,11 @@ enum Verb {
     /// Draws the contact sheet of all stitches and cables, front and back
     Stitches {
         #[arg(short, default_value = "out/stitches.png")]
+        output: PathBuf,
+    },
+    /// Draws a picture of every pattern of the library, ten in a row
+    Library {
+        #[arg(short, default_value = "out/patterns.png")]
         output: PathBuf,
     },
     /// Facts about a project
@@ -331,6 +336,12 @@ fn run(arguments: Arguments) -> Result<()> {
             let sheet = sheet::draw(&Gpu::headless()?, &mut |done, _| bar.set_position(done as u64))?;
             bar.finish_and_clear();
             files::write_png(&output, &sheet)
+        }
+        Verb::Library { output } => {
+            let bar = interrupt::step_counter("patterns")?;
+            let pictures = library::draw(&Gpu::headless()?, &mut |done| bar.set_position(done as u64))?;
+            bar.finish_and_clear();
+            files::write_png(&output, &pictures)
         }
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }

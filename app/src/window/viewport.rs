@@ -10,6 +10,7 @@ pub fn show(editor: &mut Editor, ui: &mut egui::Ui) {
     egui::CentralPanel::default().frame(frame).show(ui, |ui| {
         let size = ui.available_size();
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        super::panels::library::take_dropped(editor, &response);
         editor.panel.aspect = (size.x / size.y.max(1.0)).max(0.01);
         // The picture lies under what tools draw, and is drawn after what they do.
         let picture = ui.painter().add(egui::Shape::Noop);

@@ -1,6 +1,6 @@
 //! Tools and what they work with, stage by stage.
 
-use super::{colour, evenness, palette, patterns, tessellation, yarn};
+use super::{colour, evenness, library, palette, patterns, tessellation, yarn};
 use crate::drawing::Stage;
 use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
@@ -13,6 +13,8 @@ use egui::Ui;
 pub enum Tab {
     /// Kinds of stitches.
     Palette,
+    /// Written patterns.
+    Library,
     /// What is done to a fabric beside.
     Finish,
     /// The simulation.
@@ -74,6 +76,7 @@ fn fabric(editor: &mut Editor, ui: &mut Ui) {
     ui.horizontal(|ui| {
         for (shown, name, what) in [
             (Tab::Palette, "Palette", "Kinds of stitches, and patterns of knit and purl"),
+            (Tab::Library, "Library", "Written patterns, to be tiled over the fabric"),
             (Tab::Finish, "Finish", "Copies, colours, cables, seams, structure and evenness"),
             (Tab::Simulate, "Simulate", "The simulation, its scene and its yarn"),
         ] {
@@ -91,6 +94,7 @@ fn fabric(editor: &mut Editor, ui: &mut Ui) {
             ui.separator();
             patterns::show(editor, ui);
         }
+        Tab::Library => library::show(editor, ui),
         Tab::Finish => {
             copies(editor, ui);
             ui.separator();

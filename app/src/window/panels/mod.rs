@@ -4,6 +4,7 @@ mod colour;
 mod evenness;
 mod history;
 pub mod left;
+pub mod library;
 mod palette;
 mod patterns;
 mod problems;
@@ -49,6 +50,8 @@ pub struct State {
     pub forecast: tessellation::Forecast,
     /// Which tools the left panel shows.
     pub tab: left::Tab,
+    /// The pattern library.
+    pub library: library::State,
     /// Numbers of the alternations.
     pub alternation: patterns::Numbers,
 }
@@ -69,6 +72,7 @@ impl State {
             tab: left::Tab::Simulate,
             brush_radius: 30.0,
             palette_filter: String::new(),
+            library: library::State::default(),
             alternation: patterns::Numbers::default(),
         }
     }
