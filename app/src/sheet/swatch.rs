@@ -22,7 +22,7 @@ const TIME: f64 = 0.5;
 
 /// Colour of the yarn of the stitch that a swatch is about.
 const SHOWN: Dye = Dye([0xc9, 0x6a, 0x3c]);
-/// Colours of the loops that it joins, the front one first.
+/// Colours of the loops that it joins or hands on, the front one first.
 const JOINED: [Dye; 3] = [Dye([0x2f, 0x6f, 0xa8]), Dye([0x7f, 0xb2, 0xd9]), Dye([0x9a, 0x8f, 0xb5])];
 
 /// The part of a swatch that is looked at.
@@ -78,7 +78,9 @@ fn of_stitch(stitch: &Stitch) -> Result<Swatch> {
     let rows = stitches.rows();
     let (shown, below) = (rows[3].faces[3], rows[2].faces.clone());
     stitches.set_dye(shown, SHOWN)?;
-    if stitch.bottoms() > 1 {
+    // Where the loops below are joined, gathered or slipped, they are what there is to see.
+    let is_slipped = stitch.ops.iter().any(|op| op.make.passes_on());
+    if stitch.bottoms() > 1 || stitch.ops.is_empty() || is_slipped {
         for (loop_, dye) in stitch.stack.iter().zip(JOINED) {
             stitches.set_dye(below[3 + usize::from(*loop_)], dye)?;
         }
