@@ -103,15 +103,15 @@ fn borders() -> Result<Vec<Swatch>> {
 fn cables() -> Result<Vec<Swatch>> {
     let cross = |n, m, to_left| Cable::cross(vec![], n, m, to_left);
     let rope = |cable: Cable| vec![(0, cable); 3];
-    let strands = [(0, false), (2, true), (0, false), (2, true)];
-    let plait = strands.map(|(left, to_left)| (left, cross(2, 2, to_left)));
+    let strands = [(0, false), (2, true)].repeat(3);
+    let plait = strands.into_iter().map(|(left, to_left)| (left, cross(2, 2, to_left)));
     let cables = [
         ("1/1 LC", "two loops crossed, the front one to the left", rope(cross(1, 1, true)), 10),
         ("C4F (2/2 LC)", "two over two to the left", rope(cross(2, 2, true)), 17),
         ("C4B (2/2 RC)", "two over two to the right", rope(cross(2, 2, false)), 17),
         ("C6F (3/3 LC)", "three over three to the left", rope(cross(3, 3, true)), 23),
         ("C6B (3/3 RC)", "three over three to the right", rope(cross(3, 3, false)), 23),
-        ("2/2/2", "plait of three strands", plait.to_vec(), 16),
+        ("2/2/2", "plait of three strands", plait.collect(), 15),
     ];
     let swatch = |(title, description, crossings, height): (&str, &str, Vec<(usize, Cable)>, usize)| {
         let stitches = swatches::of_cable(&crossings, height, StitchSize::of_width(LOOP))?;
