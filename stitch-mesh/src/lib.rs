@@ -3,6 +3,7 @@
 
 pub mod autolabel;
 pub mod cable;
+pub mod catalogue;
 mod corners;
 pub mod dye;
 pub mod edge_counts;

@@ -38,7 +38,8 @@ pub enum Make {
 pub struct Op {
     /// How the loop is made.
     pub make: Make,
-    /// Twist of the loop's legs: +1 clockwise, −1 counter-clockwise, 0 none.
+    /// Twist of the loop's legs: +1 clockwise, −1 counter-clockwise, 0 none. It is seen from the needle, looking down on the
+    /// loop: clockwise, the leg of the right foot passes in front, up to the left, as in a k tbl.
     pub twist: i8,
 }
 
@@ -90,7 +91,7 @@ impl Stitch {
     }
 
     /// The stitch that a face with these numbers of bottoms and tops gets when nobody has chosen one: knit where it can be,
-    /// `kp` (a knitter's kfb: no hole) for an increase, a decrease with the leftmost or the rightmost loop in front.
+    /// `kp` (which makes no hole) for an increase, a decrease with the leftmost or the rightmost loop in front.
     pub fn default_for(bottoms: usize, tops: usize, left_in_front: bool) -> Self {
         let make = |i: usize| match (bottoms, i % 2) {
             (0, _) => Make::YarnOver,

@@ -5,7 +5,8 @@ use crate::stitch::{Make, Stitch};
 /// Stitches with a name of their own: symbol, abbreviation, name.
 ///
 /// The order of a decrease follows from how it is worked, right to left: in a k2tog the needle enters the left loop first, so
-/// that one comes to lie in front, leaning right; in an ssk the right one, leaning left.
+/// that one comes to lie in front, leaning right; in an ssk the right one, leaning left. An increase begins on the right too: the
+/// knit of a kfb stands there, and its twisted loop, whose bar looks like a purl, on the left of it.
 const NAMES: [(&str, &str, &str); 36] = [
     ("k", "k", "knit"),
     ("p", "p", "purl"),
@@ -19,8 +20,8 @@ const NAMES: [(&str, &str, &str); 36] = [
     ("x", "sl woven", "slipped, yarn woven through its legs"),
     ("sk", "sl, k", "slipped and knitted into"),
     ("ks", "k, sl", "knitted into and slipped"),
-    ("kp", "kfb", "knit and purl into one (bar increase)"),
-    ("pk", "pfb", "purl and knit into one"),
+    ("pk", "kfb", "knit into the front and back of one (bar increase)"),
+    ("kp", "pfb", "purl into the front and back of one; (p1, k1) in one"),
     ("ky", "k1, yo", "knit, yarn-over"),
     ("yk", "yo, k1", "yarn-over, knit"),
     ("py", "p1, yo", "purl, yarn-over"),

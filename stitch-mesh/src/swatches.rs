@@ -1,4 +1,4 @@
-//! Swatches: one small flat piece for each stitch and cable, to look at and to test with.
+//! Swatches: one small flat piece for each stitch, border and cable, to look at and to test with.
 
 use crate::cable::Cable;
 use crate::edge_counts::StitchSize;
@@ -6,22 +6,6 @@ use crate::ids::VertexId;
 use crate::pieces::{PieceError, from_rows};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
-
-/// The stitches of Table 1, the twisted ones, and the special faces of Fig. 4 and 5, in the order of a palette.
-pub const STITCHES: [(&str, &[&str]); 6] = [
-    ("Plain", &["k", "p", "d0y", "s", "x"]),
-    ("Twisted", &["k1", "k-1", "p1", "p-1"]),
-    ("Two from one", &["kp", "ky", "yk", "py", "yp", "k1y", "sk", "ks"]),
-    ("Three from one", &["kpk", "kyk", "yky", "kpy", "ykp", "pkp", "pyp", "ypy", "pky", "ypk"]),
-    ("Two together", &["d12k", "d21k", "d12p", "d21p"]),
-    (
-        "Three together",
-        &[
-            "d123k", "d132k", "d213k", "d231k", "d312k", "d321k", "d123p", "d132p", "d213p", "d231p",
-            "d312p", "d321p",
-        ],
-    ),
-];
 
 /// A swatch of stockinette with `stitch` in its middle. What it adds or takes away is made good in the rows above and below,
 /// at a distance.
@@ -40,6 +24,17 @@ pub fn of_stitch(stitch: &Stitch, size: StitchSize) -> Result<StitchMesh, PieceE
     let mut rows = vec![knit(6 + below); 3];
     rows.push(beside(3, stitch.clone(), 3));
     rows.extend(vec![knit(6 + above); 3]);
+    from_rows(&rows, size)
+}
+
+/// A swatch of stockinette on a cast-on of seven such loops; or without one, where the knits stand on the border. Its upper
+/// border is bound off.
+///
+/// # Errors
+/// Another number of loops.
+pub fn with_borders(cast_on: Option<[Stitch; 7]>, size: StitchSize) -> Result<StitchMesh, PieceError> {
+    let mut rows: Vec<_> = cast_on.map(Vec::from).into_iter().collect();
+    rows.extend(vec![vec![Stitch::knit(); 7]; 6]);
     from_rows(&rows, size)
 }
 

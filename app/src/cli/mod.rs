@@ -335,7 +335,7 @@ fn run(arguments: Arguments) -> Result<()> {
             let bar = interrupt::step_counter("swatches")?;
             let sheet = sheet::draw(&Gpu::headless()?, &mut |done, _| bar.set_position(done as u64))?;
             bar.finish_and_clear();
-            files::write_png(&output, &sheet)
+            files::write_small_png(&output, &sheet)
         }
         Verb::Library { output } => {
             let bar = interrupt::step_counter("patterns")?;

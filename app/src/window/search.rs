@@ -1,10 +1,11 @@
 //! The command search: find whatever can be done by its name, and do it.
 
 use super::actions::{self, Action};
-use super::catalogue::{KINDS, Kind};
+use super::catalogue;
 use super::editor::Editor;
 use crate::drawing::Stage;
 use egui::{Key, RichText};
+use stitch_mesh::catalogue::symbols;
 
 /// Entries shown at once; who looks for others writes more.
 const MOST: usize = 12;
@@ -20,14 +21,15 @@ pub struct Search {
 #[derive(Clone, Copy)]
 enum Entry {
     Action(&'static Action),
-    Stitch(&'static Kind),
+    /// A stitch by its symbol.
+    Stitch(&'static str),
 }
 
 impl Entry {
     fn name(self) -> String {
         match self {
             Self::Action(action) => action.name.to_owned(),
-            Self::Stitch(kind) => format!("{} · {}", kind.name(), kind.symbol),
+            Self::Stitch(symbol) => format!("{} · {symbol}", catalogue::name(symbol)),
         }
     }
 
@@ -42,7 +44,7 @@ impl Entry {
     fn run(self, editor: &mut Editor) {
         match self {
             Self::Action(action) => action.run(editor),
-            Self::Stitch(kind) => kind.choose(editor),
+            Self::Stitch(symbol) => catalogue::choose(symbol, editor),
         }
     }
 }
@@ -50,7 +52,7 @@ impl Entry {
 /// Entries in which every word of the text occurs; those that begin with it first, those that can't be done now last.
 fn find(editor: &Editor, text: &str) -> Vec<Entry> {
     let text = text.trim().to_lowercase();
-    let entries = actions::all().map(Entry::Action).chain(KINDS.iter().map(Entry::Stitch));
+    let entries = actions::all().map(Entry::Action).chain(symbols().map(Entry::Stitch));
     let matching = |e: &Entry| text.split_whitespace().all(|word| e.name().to_lowercase().contains(word));
     let mut found: Vec<Entry> = entries.filter(matching).collect();
     found.sort_by_key(|e| (e.blocked(editor).is_some(), !e.name().to_lowercase().starts_with(&text)));

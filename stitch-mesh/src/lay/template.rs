@@ -270,7 +270,10 @@ fn twisted(draft: &mut Draft, op: Op, place: DVec2, [left, right]: [LocalPort; 2
         return Legs { out: left, back: right, crossing: None };
     }
     let [front, behind] = draft.crossing(place, NodeKind::Crossing);
-    let crossing = Some(if op.twist > 0 { [front, behind] } else { [behind, front] });
+    // A loop hangs on the needle with its right leg in front. Knitted through the back, it is opened from the other side: the top
+    // of the right leg turns on to the left, its foot stays, so that leg, on its way back down here, crosses in front. Seen from
+    // the needle that is clockwise; seen from the back of the fabric it is the same.
+    let crossing = Some(if op.twist > 0 { [behind, front] } else { [front, behind] });
     Legs { out: right, back: left, crossing }
 }
 

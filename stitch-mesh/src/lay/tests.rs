@@ -8,7 +8,7 @@ use crate::pieces::tube;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
 use crate::tessellate::tessellate;
-use crate::yarn_net::YarnNet;
+use crate::yarn_net::{NodeKind, YarnNet};
 use proptest::prelude::*;
 
 /// Everything that a net promises.
@@ -140,6 +140,24 @@ fn twisted_loops_cross_their_own_legs() {
     });
     // The crossing, and the two nodes at which the end is drawn through the last bind-off loop.
     assert_eq!(crossings.count(), 3);
+}
+
+/// Through the back loop the leg of the right foot crosses in front, knitted or purled; the other twist is its mirror image.
+#[test]
+fn through_the_back_loop_the_right_leg_is_in_front() {
+    for (symbol, right_in_front) in [("k1", true), ("p1", true), ("k-1", false), ("p-1", false)] {
+        let mut stitches = fabric(3, 3, 0.004);
+        stitches.set_stitch(FaceId(4), symbol.parse().unwrap()).unwrap();
+        let net = lay(&stitches);
+        let crossing = net.nodes.iter().find(|n| n.kind == NodeKind::Crossing && n.face == Some(FaceId(4)));
+        let crossing = crossing.unwrap();
+        let place = |visit: usize| net.nodes[net.visits[visit].node.index()].position;
+        let front = crossing.visits[0].index();
+        // Of the two ways along the yarn one goes down to the foot, the other up through the top.
+        let foot =
+            [place(front - 1), place(front + 1)].into_iter().min_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
+        assert_eq!(foot.x > crossing.position.x, right_in_front, "{symbol}");
+    }
 }
 
 proptest! {

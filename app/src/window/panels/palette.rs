@@ -1,10 +1,11 @@
 //! All kinds of stitches, to set or to paint with.
 
 use super::color32;
-use crate::window::catalogue::{Group, KINDS, Kind};
+use crate::window::catalogue;
 use crate::window::editor::Editor;
 use egui::{Color32, Ui};
 use render::palette;
+use stitch_mesh::catalogue::GROUPS;
 
 /// The colour of a stitch in the picture.
 pub fn color(symbol: &str) -> Color32 {
@@ -22,36 +23,36 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find a stitch"));
     });
     let wanted = editor.panel.palette_filter.trim().to_lowercase();
-    let shown = |k: &&Kind| k.symbol.contains(&wanted) || k.name().to_lowercase().contains(&wanted);
-    for (group, heading) in Group::ALL {
-        let kinds: Vec<&Kind> = KINDS.iter().filter(|k| k.group == group).filter(shown).collect();
-        if kinds.is_empty() {
+    let shown =
+        |symbol: &&str| symbol.contains(&wanted) || catalogue::name(symbol).to_lowercase().contains(&wanted);
+    for (heading, symbols) in GROUPS {
+        let symbols: Vec<&str> = symbols.iter().copied().filter(shown).collect();
+        if symbols.is_empty() {
             continue;
         }
         ui.label(egui::RichText::new(heading).weak());
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
-            for kind in kinds {
-                stitch(editor, ui, kind);
+            for symbol in symbols {
+                stitch(editor, ui, symbol);
             }
         });
     }
 }
 
-fn stitch(editor: &mut Editor, ui: &mut Ui, kind: &'static Kind) {
-    let chosen = editor.brush.to_string() == kind.symbol;
+fn stitch(editor: &mut Editor, ui: &mut Ui, symbol: &str) {
+    let chosen = editor.brush.to_string() == symbol;
     // The fills are light: dark letters on all of them.
-    let text = egui::RichText::new(kind.symbol).color(Color32::BLACK).monospace();
+    let text = egui::RichText::new(symbol).color(Color32::BLACK).monospace();
     let stroke =
         if chosen { egui::Stroke::new(2.5, ui.visuals().strong_text_color()) } else { egui::Stroke::NONE };
-    let button =
-        egui::Button::new(text).fill(color(kind.symbol)).stroke(stroke).min_size(egui::vec2(36.0, 20.0));
+    let button = egui::Button::new(text).fill(color(symbol)).stroke(stroke).min_size(egui::vec2(36.0, 20.0));
     let response = ui.add(button);
     response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{} · {}", kind.symbol, kind.name()))
+        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{symbol} · {}", catalogue::name(symbol)))
     });
     let what = "sets what is selected; with nothing selected, the stitch to paint with";
-    if response.on_hover_text(format!("{} ({})\n{what}", kind.name(), kind.symbol)).clicked() {
-        kind.choose(editor);
+    if response.on_hover_text(format!("{} ({symbol})\n{what}", catalogue::name(symbol))).clicked() {
+        catalogue::choose(symbol, editor);
     }
 }
