@@ -1,15 +1,16 @@
 //! The patterns that come with the program, and a picture of each.
 
-use crate::written::{SWATCH_STITCH_WIDTH, swatch, title};
+use crate::project::{Fabric, Project};
+use crate::scenes::pinned_out;
+use crate::written::{swatch, title};
 use anyhow::{Context, Result};
 use glam::Vec3;
 use image::RgbaImage;
 use include_dir::{Dir, include_dir};
 use patterns::knitspeak::Width;
 use render::{Bounds, Camera, Drawing, Gpu, NamedView, render_image};
-use sim_core::{Material, Pin, Scene, Simulator, curves};
-use std::sync::{Arc, LazyLock};
-use stitch_mesh::lay::lay;
+use sim_core::{Simulator, curves};
+use std::sync::LazyLock;
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../assets/patterns");
 
@@ -83,27 +84,32 @@ pub fn draw(gpu: &Gpu, watch: &mut dyn FnMut(usize)) -> Result<RgbaImage> {
     Ok(all)
 }
 
+/// A swatch about as high as wide, as far as its rows can be repeated.
+fn high(text: &str) -> Result<Project> {
+    let (once, facts) = swatch(text, Width::AsWritten, 1)?;
+    let size = once.size;
+    let wanted = (facts.cast_on as f64 * size.width / size.height / facts.rows as f64).round() as usize;
+    Ok(if wanted < 2 {
+        once
+    } else {
+        swatch(text, Width::AsWritten, wanted).map_or(once, |repeated| repeated.0)
+    })
+}
+
 /// A swatch pinned out and settled a little, seen from the front.
 fn picture(gpu: &Gpu, text: &str) -> Result<RgbaImage> {
     /// Simulated time [s], and part of the swatch that shows.
     const TIME: f64 = 0.15;
     const SHOWN: f32 = 0.46;
-    let stitches = swatch(text, Width::AsWritten, 1)?.0.fabric()?.stitches.clone();
-    let net = Arc::new(lay(&stitches));
-    let material = Material::for_loop_width(SWATCH_STITCH_WIDTH);
-    let stiffness = material.stretch_stiffness() / SWATCH_STITCH_WIDTH;
-    let on_border = |h| stitches.mesh().twin(h).is_none();
-    let held = net.nodes.iter().enumerate().filter(|(_, n)| match n.face {
-        Some(face) => stitches.mesh().face_half_edges(face).any(on_border),
-        None => n.visits.len() > 2,
-    });
-    let mut scene = Scene::empty();
-    scene.pins = held.map(|(i, n)| Pin { node: i as u32, target: n.position, stiffness }).collect();
-    let mut simulator = Simulator::new(&net, material.clone(), scene, net.laid_state())?;
+    let project = high(text)?;
+    let Fabric { stitches, net, .. } = project.fabric()?;
+    let material = project.material.clone();
+    let scene = pinned_out(stitches, (net, &net.laid_state()), &material, |_| true);
+    let mut simulator = Simulator::new(net, material.clone(), scene, net.laid_state())?;
     while simulator.time_s() < TIME {
         simulator.step()?;
     }
-    let yarn = curves(&net, simulator.state(), material.drawn_radius);
+    let yarn = curves(net, simulator.state(), material.drawn_radius);
     let drawing = Drawing { yarn, ..Drawing::default() };
     let [low, high] = stitches.mesh().bounds().map(|p| p.as_vec3());
     let middle = (low + high) / 2.0;

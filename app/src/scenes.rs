@@ -1,28 +1,52 @@
 //! Scenes: what surrounds a fabric, by name or from a file.
 
 use crate::files;
+use crate::project::Fabric;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
-use sim_core::{Body, Scene};
+use sim_core::{Body, Material, Pin, Scene};
 use std::path::Path;
-use stitch_mesh::yarn_net::YarnState;
+use stitch_mesh::ids::HalfEdgeId;
+use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Friction of wool on a body.
 const FRICTION: f64 = 0.4;
 
 /// Scenes by name, and what they are.
-pub const NAMED: [(&str, &str); 4] = [
+pub const NAMED: [(&str, &str); 5] = [
     ("free", "no gravity, nothing around"),
+    ("board", "pinned out by its borders, as a knitter blocks it"),
     ("ground", "falling on the ground"),
     ("sphere", "falling on a sphere over the ground"),
     ("form", "worn by a dress form (made for the bundled pullover)"),
 ];
 
+/// Pins at the stitches on the borders of a fabric, or on those that `on` says, and at its cast-on and bind-off.
+pub fn pinned_out(
+    stitches: &StitchMesh,
+    (net, state): (&YarnNet, &YarnState),
+    material: &Material,
+    on: impl Fn(HalfEdgeId) -> bool,
+) -> Scene {
+    let spacing = stitches.mesh().edges().next().map_or(1e-3, |e| stitches.mesh().edge_length(e));
+    let stiffness = material.stretch_stiffness() / spacing;
+    let held = net.nodes.iter().zip(&state.position).enumerate().filter(|(_, (node, _))| match node.face {
+        Some(face) => {
+            stitches.mesh().face_half_edges(face).any(|h| stitches.mesh().twin(h).is_none() && on(h))
+        }
+        None => node.visits.len() > 2,
+    });
+    let pins = held.map(|(i, (_, target))| Pin { node: i as u32, target: *target, stiffness }).collect();
+    Scene { pins, ..Scene::empty() }
+}
+
 /// A scene by name or file, placed to suit a fabric.
 ///
 /// # Errors
 /// Neither a name nor a readable file; a file that is no scene.
-pub fn scene(name_or_file: &str, state: &YarnState) -> Result<Scene> {
+pub fn scene(name_or_file: &str, fabric: &Fabric, material: &Material) -> Result<Scene> {
+    let state = fabric.state();
     let (low, high) = state
         .position
         .iter()
@@ -37,6 +61,7 @@ pub fn scene(name_or_file: &str, state: &YarnState) -> Result<Scene> {
     };
     Ok(match name_or_file {
         "free" => Scene::empty(),
+        "board" => pinned_out(&fabric.stitches, (&fabric.net, &state), material, |_| true),
         "ground" => Scene { bodies: vec![ground(low.y - 0.1 * size)], ..Scene::default() },
         "sphere" => {
             let radius = 0.3 * size;

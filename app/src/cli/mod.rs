@@ -87,7 +87,7 @@ enum Verb {
         project: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// free, ground, sphere, form, or a file; the project's own scene if absent
+        /// free, board, ground, sphere, form, or a file; the project's own scene if absent
         #[arg(long)]
         scene: Option<String>,
         /// Simulated time

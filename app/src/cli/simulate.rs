@@ -73,7 +73,7 @@ pub fn simulate(
         bail!("cannot simulate {seconds} s: --seconds goes up to 3600");
     }
     if let Some(name) = scene {
-        project.scene = scenes::scene(name, &project.fabric()?.state())?;
+        project.scene = scenes::scene(name, project.fabric()?, &project.material)?;
     }
     let mut simulator = start(&project, &project.scene)?;
     let camera =

@@ -1,10 +1,11 @@
 //! The swatches of the sheet: which there are, and how each is settled and looked at.
 
+use crate::scenes::pinned_out;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use image::RgbaImage;
 use render::{Bounds, Camera, Drawing, Gpu, NamedView, render_image};
-use sim_core::{Material, Pin, Scene, Simulator, curves};
+use sim_core::{Material, Simulator, curves};
 use std::sync::Arc;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::catalogue::GROUPS;
@@ -130,17 +131,11 @@ pub(super) fn both_sides(gpu: &Gpu, swatch: &Swatch, side: u32) -> Result<[RgbaI
     let stitches = &swatch.stitches;
     let net = Arc::new(lay(stitches));
     let material = Material::for_loop_width(LOOP);
-    let mut scene = Scene::empty();
-    let stiffness = material.stretch_stiffness() / LOOP;
     // Pinned out on a board: stitches on all sides, cables above and below only, as they draw together.
     let is_cabled = !stitches.cables().is_empty();
-    let is_edge = |h| stitches.mesh().twin(h).is_none() && !(is_cabled && stitches.is_wale(h));
-    let held = net.nodes.iter().enumerate().filter(|(_, n)| match n.face {
-        Some(face) => stitches.mesh().face_half_edges(face).any(is_edge),
-        None => n.visits.len() > 2,
-    });
-    scene.pins = held.map(|(i, n)| Pin { node: i as u32, target: n.position, stiffness }).collect();
-    let mut simulator = Simulator::new(&net, material.clone(), scene, net.laid_state())?;
+    let state = net.laid_state();
+    let scene = pinned_out(stitches, (&net, &state), &material, |h| !(is_cabled && stitches.is_wale(h)));
+    let mut simulator = Simulator::new(&net, material.clone(), scene, state)?;
     while simulator.time_s() < TIME {
         simulator.step()?;
     }

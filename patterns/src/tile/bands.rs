@@ -23,7 +23,8 @@ pub(super) fn levels(stitches: &StitchMesh, rows: &[Row], region: &HashSet<FaceI
 pub(super) struct Band {
     /// Rows of faces, the lowest first.
     pub faces: Vec<Vec<FaceId>>,
-    closed: bool,
+    /// Whether it goes all round.
+    pub closed: bool,
 }
 
 /// What is left of the region, and the columns of what is tiled.

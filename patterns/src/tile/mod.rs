@@ -120,7 +120,8 @@ pub fn tile(
         for band in bands.above(row, &swatches.heights) {
             let room = band.faces[0].len();
             widest = widest.max(room);
-            let Some(wide) = swatches.widest(room) else {
+            let round = if band.closed { swatches.round(room)? } else { None };
+            let Some(wide) = round.as_ref().map(|_| room).or(swatches.widest(room)) else {
                 *left_out.entry((room, 0)).or_default() += 1;
                 continue;
             };
@@ -132,9 +133,13 @@ pub fn tile(
             let faces = band.faces.iter().map(|row| (0..wide).map(|i| row[(start + i) % room]).collect());
             let faces: Vec<Vec<FaceId>> = faces.collect();
             bands.take(&faces, swatches.repeat);
-            repeats += (wide - swatches.narrowest) / swatches.repeat + 1;
+            repeats += wide / swatches.repeat;
             covered += wide * high;
-            let rows = swatches.swatch(wide)?.into_iter().take(high).collect();
+            let rows = match round {
+                Some(rows) => rows,
+                None => swatches.swatch(wide)?,
+            };
+            let rows = rows.into_iter().take(high).collect();
             blocks.push(Block { faces, rows });
         }
     }

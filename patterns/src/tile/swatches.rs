@@ -20,11 +20,15 @@ pub(super) struct Swatches<'p> {
 
 impl<'p> Swatches<'p> {
     pub fn new(pattern: &'p Pattern, layout: Layout) -> Result<Self, TileError> {
-        let one = pattern.work(Width::Repeats(1)).or_else(|_| pattern.work(Width::AsWritten))?;
-        // A pattern without an open group has one width.
-        let two = pattern.work(Width::Repeats(2)).map_or(0, |w| w.cast_on);
+        // Rows that begin and end within a repeat may take two of them at least; a pattern without an open group has one width.
+        let passes = (1..=3).find_map(|n| Some((n, pattern.work(Width::Repeats(n)).ok()?)));
+        let (n, one) = match passes {
+            Some(found) => found,
+            None => (0, pattern.work(Width::AsWritten)?),
+        };
         let narrowest = one.cast_on;
-        let repeat = if two > narrowest { two - narrowest } else { narrowest };
+        let wider = pattern.work(Width::Repeats(n + 1)).map_or(0, |w| w.cast_on);
+        let repeat = if wider > narrowest { wider - narrowest } else { narrowest };
         let closes = |(_, row): &(usize, &WorkedRow)| row.loops == narrowest;
         let heights: Vec<usize> = (1..).zip(&one.rows).filter(closes).map(|(i, _)| i).collect();
         let ends = one.rows.last().map_or(narrowest, |row| row.loops);
@@ -45,6 +49,24 @@ impl<'p> Swatches<'p> {
     /// The widest swatch of at most so many stitches.
     pub fn widest(&self, room: usize) -> Option<usize> {
         room.checked_sub(self.narrowest).map(|more| self.narrowest + more / self.repeat * self.repeat)
+    }
+
+    /// Rows of a swatch that closes around so many stitches, if the pattern does: one without edge stitches, or one whose edge
+    /// stitches are those that a repeat begins with, once more.
+    pub fn round(&mut self, around: usize) -> Result<Option<Vec<Vec<Item>>>, TileError> {
+        let edge = self.narrowest % self.repeat;
+        if !around.is_multiple_of(self.repeat) || around + edge < self.narrowest {
+            return Ok(None);
+        }
+        let mut rows = self.swatch(around + edge)?;
+        let plain = |item: &Item| matches!(item, Item::Stitch(s) if (s.bottoms(), s.tops()) == (1, 1));
+        for row in &mut rows {
+            let again = row.split_off(row.len() - edge.min(row.len()));
+            if again.len() < edge || again != row[..edge.min(row.len())] || !again.iter().all(plain) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(rows))
     }
 
     /// Rows of a swatch, the lowest first.

@@ -81,3 +81,19 @@ fn too_small_a_region_says_how_much_it_needs() {
     let error = over(&flat, EDGED, Layout::Straight).unwrap_err().to_string();
     assert!(error.contains("needs 7 stitches side by side and 2 rows"), "{error}");
 }
+
+#[test]
+fn edge_stitches_fall_away_around_a_tube() {
+    let round = tube(15, 2, StitchSize::of_width(3e-3)).unwrap();
+    let tiled = over(
+        &round,
+        "Row 1 (RS): P2, *k3, p2, repeat from *. Row 2: K2, *p3, k2, repeat from *.",
+        Layout::Straight,
+    );
+    let tiled = tiled.unwrap();
+    assert_eq!((tiled.repeats, tiled.left_out.len()), (3, 0), "{:?}", tiled.left_out);
+    assert_eq!(row(&tiled.stitches, 0), "p p k k k p p k k k p p k k k");
+    // A decrease over the edge cannot fall away.
+    let text = "Row 1 (RS): *K3, yo, k2tog, repeat from * to last 4 sts, k2tog, yo, k2. Row 2: Purl.";
+    assert!(!over(&round, text, Layout::Straight).unwrap().left_out.is_empty());
+}

@@ -15,13 +15,16 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         button(editor, ui, "Lay anew");
     });
     ui.label("Scene");
-    let state = editor.project().fabric.as_ref().map(|f| f.state());
+    let view = editor.view.clone();
     ui.horizontal_wrapped(|ui| {
         for (name, what) in scenes::NAMED {
             if ui.button(name).on_hover_text(what).clicked()
-                && let Some(Ok(scene)) = state.as_deref().map(|s| scenes::scene(name, s))
+                && let Some(fabric) = &view.project.fabric
             {
-                editor.act(Command::SetScene { scene });
+                match scenes::scene(name, fabric, &view.project.material) {
+                    Ok(scene) => editor.act(Command::SetScene { scene }),
+                    Err(error) => editor.error = Some(format!("{error:#}")),
+                }
             }
         }
     });
