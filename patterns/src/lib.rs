@@ -2,4 +2,5 @@
 
 pub mod alternation;
 pub mod chart;
+pub mod diagram;
 pub mod knitspeak;

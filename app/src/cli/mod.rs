@@ -1,5 +1,6 @@
 //! The command line. Exit status: 0 done; 1 the input or the work failed, with one line on standard error; 2 wrong usage.
 
+mod chart;
 mod demo;
 mod interrupt;
 mod simulate;
@@ -130,6 +131,17 @@ enum Verb {
     Stitches {
         #[arg(short, default_value = "out/stitches.png")]
         output: PathBuf,
+    },
+    /// Draws a knitting chart (.svg, .png)
+    Chart {
+        project: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        /// The first and the last row, as in 1..24; all rows if absent
+        #[arg(long, value_name = "A..B", value_parser = chart::parse_rows)]
+        rows: Option<[usize; 2]>,
+        #[command(flatten)]
+        print: Output,
     },
     /// Facts about a project
     Inspect {
@@ -290,6 +302,7 @@ fn run(arguments: Arguments) -> Result<()> {
             bar.finish_and_clear();
             files::write_png(&output, &sheet)
         }
+        Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
 }
