@@ -92,16 +92,37 @@ pub struct Diagram {
 }
 
 impl Course {
-    /// All rows of a fabric, as [`StitchMesh::rows`] gives them: the lowest first.
-    pub fn all(rows: &[Row]) -> Vec<Self> {
-        let course =
-            |(number, row): (usize, &Row)| Self { number, closed: row.closed, faces: row.faces.clone() };
-        (1..).zip(rows).map(course).collect()
+    /// All rows of a fabric, as [`StitchMesh::rows`] gives them: the lowest first. A row has the number after that of the
+    /// highest row below it, so pieces that are knitted beside each other count their rows alike.
+    pub fn all(stitches: &StitchMesh, rows: &[Row]) -> Vec<Self> {
+        let mut number_of = vec![0; stitches.mesh().face_count()];
+        let course = |row: &Row| {
+            let below = row.faces.iter().flat_map(|f| stitches.below(*f)).map(|f| number_of[f.index()]);
+            let number = 1 + below.max().unwrap_or(0);
+            row.faces.iter().for_each(|f| number_of[f.index()] = number);
+            Self { number, closed: row.closed, faces: row.faces.clone() }
+        };
+        rows.iter().map(course).collect()
+    }
+
+    /// The lowest row and the rows above it, one above the other; what is knitted beside them (sleeves, or the second of two
+    /// pieces) has charts of its own.
+    pub fn piece(stitches: &StitchMesh, rows: &[Row]) -> Vec<Self> {
+        let mut piece: Vec<Self> = Vec::new();
+        let mut last: BTreeSet<FaceId> = BTreeSet::new();
+        for course in Self::all(stitches, rows) {
+            let mut below = course.faces.iter().flat_map(|f| stitches.below(*f));
+            if piece.is_empty() || below.any(|f| last.contains(&f)) {
+                last = course.faces.iter().copied().collect();
+                piece.push(course);
+            }
+        }
+        piece
     }
 
     /// The rows that some faces lie in, cut to the columns that they reach.
-    pub fn around(rows: &[Row], faces: &BTreeSet<FaceId>) -> Vec<Self> {
-        let mut courses = Self::all(rows);
+    pub fn around(stitches: &StitchMesh, rows: &[Row], faces: &BTreeSet<FaceId>) -> Vec<Self> {
+        let mut courses = Self::all(stitches, rows);
         courses.retain(|c| c.faces.iter().any(|f| faces.contains(f)));
         let places = |c: &Self| {
             let is_in = |f: &FaceId| faces.contains(f);

@@ -160,10 +160,34 @@ fn lace_in_the_window_and_as_files() {
 }
 
 #[test]
+fn a_repeat_is_boxed_and_a_garment_is_cut() {
+    let (mut window, _) = chart();
+    window.press("Basket");
+    assert_eq!(window.editor().diagram().unwrap().repeat, None, "not there twice");
+    window.press("Moss");
+    let repeat = window.editor().diagram().unwrap().repeat.clone().unwrap();
+    assert_eq!((repeat.columns, repeat.rows), (10..12, 0..2));
+    window.keep("chart-repeat");
+    let mut window = Window::new(app::bundled::pullover().unwrap());
+    window.press("Stitches");
+    window.key(Modifiers::SHIFT, Key::C);
+    assert!(window.says("the first 60 of"));
+    let rows = &window.editor().diagram().unwrap().rows;
+    assert!(rows.iter().zip(&rows[1..]).all(|(a, b)| b.number > a.number));
+    let start = std::time::Instant::now();
+    window.harness.run_steps(20);
+    tests::say(&format!("{:?} a frame", start.elapsed() / 20));
+    window.keep("chart-pullover");
+}
+
+#[test]
 fn a_cable_shows_in_the_chart() {
     let (mut window, rows) = chart();
     window.harness.remove_cursor();
     window.press("Front");
+    window.click_stitch(rows[3][4], None, NONE);
+    window.click_stitch(rows[3][5], None, Modifiers::SHIFT);
+    window.key(NONE, Key::P);
     window.key(NONE, Key::Num1);
     for (i, face) in rows[3][2..6].iter().enumerate() {
         window.click_stitch(*face, Some(0), if i == 0 { NONE } else { Modifiers::SHIFT });
@@ -171,6 +195,6 @@ fn a_cable_shows_in_the_chart() {
     window.key(NONE, Key::X);
     let crossings = &window.editor().diagram().unwrap().crossings;
     assert_eq!(crossings.len(), 1);
-    assert_eq!(crossings[0].columns, 2..6);
+    assert_eq!((&crossings[0].columns, &crossings[0].purled[..]), (&(2..6), &[true, false][..]));
     window.keep("chart-cable");
 }

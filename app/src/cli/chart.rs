@@ -17,12 +17,12 @@ pub fn parse_rows(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-/// Charts all rows of a project, or some.
+/// Charts the piece that begins with the lowest row of a project, or some of its rows.
 pub fn run(project: &Path, output: &Path, rows: Option<[usize; 2]>, print: Output) -> Result<()> {
     let name = project.display().to_string();
     let project = Project::open(project)?;
     let stitches = &project.fabric().context(name.clone())?.stitches;
-    let mut courses = Course::all(&stitches.rows());
+    let mut courses = Course::piece(stitches, &stitches.rows());
     if let Some([first, last]) = rows {
         if last > courses.len() {
             bail!("{name} has {} rows, not {last}", courses.len());

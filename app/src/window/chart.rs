@@ -26,7 +26,7 @@ const SQUARE: f32 = 20.0;
 /// An open chart.
 #[derive(Default)]
 pub struct ChartView {
-    /// The faces around which it is; all rows where there are none.
+    /// The faces around which it is; where there are none, the piece that begins with the lowest row.
     pub(super) part: BTreeSet<FaceId>,
     /// What it shows, and for what it was made.
     shown: Option<(Arc<StitchMesh>, BTreeSet<FaceId>, Drawn)>,
@@ -51,7 +51,7 @@ impl Editor {
         }
     }
 
-    /// Charts what is selected, or all rows.
+    /// Charts what is selected, or the piece that begins with the lowest row.
     pub(super) fn chart_part(&mut self, selected: bool) {
         let part = if selected { self.selection().faces.clone() } else { BTreeSet::new() };
         self.chart.get_or_insert_default().part = part;
@@ -68,10 +68,15 @@ impl Editor {
     }
 
     fn courses(&self) -> Vec<Course> {
-        let Some(rows) = &self.view.fabric_rows else { return Vec::new() };
+        let view = &self.view;
+        let (Some(fabric), Some(rows)) = (&view.project.fabric, &view.fabric_rows) else {
+            return Vec::new();
+        };
         match &self.chart {
-            Some(chart) if !chart.part.is_empty() => Course::around(&rows.rows, &chart.part),
-            _ => Course::all(&rows.rows),
+            Some(chart) if !chart.part.is_empty() => {
+                Course::around(&fabric.stitches, &rows.rows, &chart.part)
+            }
+            _ => Course::piece(&fabric.stitches, &rows.rows),
         }
     }
 
@@ -149,7 +154,9 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                 ui.label(egui::RichText::new(part).weak());
             }
         });
-        egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| squares(editor, ui));
+        // Knitters begin below on the right.
+        let scroll = egui::ScrollArea::both().auto_shrink(false).stick_to_bottom(true).stick_to_right(true);
+        scroll.show(ui, |ui| squares(editor, ui));
     });
     if let Some(chart) = &mut editor.chart {
         chart.panel = Some(shown.response.rect);

@@ -1,7 +1,7 @@
 //! What repeats in a chart.
 //!
-//! Stitches at both ends of the rows may be left out, up to four on a side, for borders and for what makes a pattern even;
-//! of the ways to do so that leave something that repeats across, the one that leaves out least is taken. The repeat is the
+//! Stitches at both ends of the rows may be left out, up to four on a side and no more than a quarter of the columns, for
+//! borders and for what makes a pattern even; of the ways to do so that leave something that repeats across, the one that leaves out least is taken. The repeat is the
 //! smallest number of columns, and of rows, after which everything is the same again. It has to be there twice, and plain
 //! fabric of one stitch counts for nothing.
 
@@ -57,6 +57,7 @@ impl Repeat {
         let squares = squares(diagram);
         let mut margins: Vec<[usize; 2]> =
             (0..=MARGIN).flat_map(|left| (0..=MARGIN).map(move |right| [left, right])).collect();
+        margins.retain(|[left, right]| 4 * (left + right) <= diagram.columns);
         margins.sort_by_key(|[left, right]| left + right);
         let across = margins.into_iter().find_map(|[left, right]| {
             let end = diagram.columns.checked_sub(right).filter(|end| *end > left)?;

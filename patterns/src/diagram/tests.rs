@@ -11,7 +11,7 @@ fn piece(rows: &[&str]) -> StitchMesh {
 }
 
 fn chart(stitches: &StitchMesh) -> Diagram {
-    Diagram::of(stitches, &Course::all(&stitches.rows()), [60, 80])
+    Diagram::of(stitches, &Course::piece(stitches, &stitches.rows()), [60, 80])
 }
 
 /// The rows as text, the lowest first; a dot is no stitch, a comma a further square of the same cell.
@@ -78,12 +78,26 @@ fn rows_that_go_round_are_all_right_side_rows() {
 #[test]
 fn what_is_too_large_is_cut_and_says_so() {
     let stitches = piece(&["k k p k k"; 4]);
-    let chart = Diagram::of(&stitches, &Course::all(&stitches.rows()), [3, 2]);
+    let chart = Diagram::of(&stitches, &Course::piece(&stitches, &stitches.rows()), [3, 2]);
     assert_eq!(text(&chart), ["k k p"; 2]);
     assert_eq!(chart.left_out().unwrap(), "the first 3 of 5 stitches, the first 2 of 4 rows");
-    let around = Course::around(&stitches.rows(), &[FaceId(6), FaceId(12)].into());
+    let around = Course::around(&stitches, &stitches.rows(), &[FaceId(6), FaceId(12)].into());
     let faces: Vec<_> = around.iter().map(|c| (c.number, c.faces.clone())).collect();
     assert_eq!(faces, [(2, vec![FaceId(6), FaceId(7)]), (3, vec![FaceId(11), FaceId(12)])]);
+}
+
+#[test]
+fn pieces_side_by_side_count_their_rows_alike() {
+    let [one, other] = ["k k", "p p p"].map(|row| piece(&[row; 3]));
+    let (a, b) = (one.mesh(), other.mesh());
+    let positions = a.positions().iter().chain(b.positions()).copied().collect();
+    let moved = b.face_lists().into_iter().map(|f| f.iter().map(|v| v + a.vertex_count() as u32).collect());
+    let faces: Vec<Vec<u32>> = a.face_lists().into_iter().chain(moved).collect();
+    let mesh = stitch_mesh::mesh::PolygonMesh::new(positions, &faces).unwrap();
+    let both = StitchMesh::new(mesh, [one.stitches(), other.stitches()].concat()).unwrap();
+    let all: Vec<usize> = Course::all(&both, &both.rows()).iter().map(|c| c.number).collect();
+    assert_eq!(all, [1, 1, 2, 2, 3, 3]);
+    assert_eq!(text(&chart(&both)), ["k k"; 3]);
 }
 
 #[test]

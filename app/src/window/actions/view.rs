@@ -75,7 +75,7 @@ pub(super) const ACTIONS: &[Action] = &[
     .key(Modifiers::SHIFT, Key::C)
     .at(FABRIC)
     .unless(no_fabric),
-    Action::new("Chart all rows", "Show all rows in the chart", |e| e.chart_part(false))
+    Action::new("Chart all rows", "Show all rows of the lowest piece in the chart", |e| e.chart_part(false))
         .at(FABRIC)
         .unless(|e| e.chart.is_none().then_some("there is no chart")),
     Action::new("Chart the selection", "Show the rows and columns around the selected stitches", |e| {
