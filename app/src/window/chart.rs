@@ -176,14 +176,16 @@ fn squares(editor: &mut Editor, ui: &mut Ui) {
     if let Some((.., drawn)) = &chart.shown {
         let size = SQUARE * egui::Vec2::from(drawn.diagram.size());
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Squares of the chart"));
         let area = ui.clip_rect();
         let painter = ui.painter();
         painter.rect_filled(rect, 0.0, Color32::WHITE);
-        // A mark that does not show costs nothing; none is longer than the chart is wide.
-        let seen = area.expand(2.0 * SQUARE);
+        // What does not show costs nothing.
+        let [from, to] = [area.min, area.max].map(|p| <[f32; 2]>::from((p - rect.min) / SQUARE));
         let shows = |m: &&Mark| {
-            let points = m.points.iter().map(|p| rect.min + SQUARE * vec2(p[0], p[1]));
-            points.fold(Rect::NOTHING, |bounds, p| bounds.union(Rect::from_min_max(p, p))).intersects(seen)
+            [0, 1].into_iter().all(|i| {
+                m.points.iter().any(|p| p[i] >= from[i] - 1.0) && m.points.iter().any(|p| p[i] <= to[i] + 1.0)
+            })
         };
         painter.extend(drawn.marks.iter().filter(shows).map(|m| shape(m, rect.min)));
         let selected = &editor.selection().faces;

@@ -148,9 +148,14 @@ pub fn of_crossing(crossing: &Crossing) -> Vec<Mark> {
         marks.push(Mark::area(area, Ink::White));
         marks.extend(sides.map(Mark::line));
         if crossing.purled[strand] {
-            // Near the end that shows.
-            let dot = |i: u8| [above + (left - above) * 0.2 + (f32::from(i) + 0.5) * square, 0.2];
-            marks.extend((0..crossing.strands[strand]).map(|i| Mark::dot(dot(i), 0.1)));
+            // On the part that shows, at the side away from where the strand comes from.
+            let covered = (0.2 * wide).min(0.6 * size(strand));
+            let shift = if above > left { covered - INSET } else { INSET };
+            let begin = above + 0.2 * (left - above) + shift;
+            let n = crossing.strands[strand];
+            let step = (size(strand) - covered) / f32::from(n);
+            let dot = |i: u8| [begin + (f32::from(i) + 0.5) * step, 0.2];
+            marks.extend((0..n).map(|i| Mark::dot(dot(i), 0.1)));
         }
     }
     marks

@@ -28,10 +28,12 @@ struct Entry {
     name: String,
 }
 
-fn square(at: Point, wide: usize, ink: Ink) -> [Mark; 2] {
+/// An empty square; the paper is white already.
+fn square(at: Point, wide: usize, ink: Ink) -> impl Iterator<Item = Mark> {
     let outline = rectangle(at, [wide as f32, 1.0]);
     let line = Mark { points: outline.to_vec(), paint: Paint::Line(Ink::Grid, 0.035) };
-    [Mark::area(outline[..4].iter().copied(), ink), line]
+    let area = (ink != Ink::White).then(|| Mark::area(outline[..4].iter().copied(), ink));
+    area.into_iter().chain([line])
 }
 
 impl Diagram {

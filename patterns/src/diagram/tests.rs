@@ -70,6 +70,26 @@ fn cables_lie_over_the_row_that_they_are_knitted_into() {
 }
 
 #[test]
+fn dots_of_a_purled_strand_are_not_covered() {
+    let crossing = |front: [u8; 2]| Crossing {
+        row: 0,
+        columns: 0..4,
+        strands: vec![2, 2],
+        order: vec![1, 0],
+        front: front.to_vec(),
+        purled: vec![front[0] == 1, front[0] == 0],
+    };
+    for front in [[1, 0], [0, 1]] {
+        let marks = glyph::of_crossing(&crossing(front));
+        let size = [4.0, 1.0];
+        let picture = raster::draw(&sheet::Sheet { size, marks }, 40.0).unwrap();
+        // Along the line of the dots: two of them, apart from the three sides of strands that show.
+        let black: Vec<bool> = (0..160).map(|x| picture.rgba[4 * (8 * 160 + x)] < 0x80).collect();
+        assert_eq!(black.windows(2).filter(|w| !w[0] && w[1]).count(), 3 + 2, "{front:?}");
+    }
+}
+
+#[test]
 fn rows_that_go_round_are_all_right_side_rows() {
     let chart = chart(&tube(7, 3, StitchSize::of_width(3e-3)).unwrap());
     assert!(chart.rows.iter().all(|r| r.right_side) && chart.repeat.is_none());
