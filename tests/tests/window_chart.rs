@@ -4,6 +4,7 @@
 
 use app::project::{Fabric, Project};
 use egui::{Key, Modifiers, Pos2};
+use egui_kittest::kittest::Queryable as _;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::pieces::from_rows;
@@ -145,12 +146,23 @@ fn lace_in_the_window_and_as_files() {
     let mut window = Window::new(project);
     window.key(Modifiers::SHIFT, Key::C);
     window.keep("chart-lace");
+    window.press("Save SVG…");
+    assert!(window.says("give the project a name first"));
+    window.harness.get_by_label("Path").focus();
+    window.harness.step();
+    window.harness.get_by_label("Path").type_text(program.path("saved.purl").to_str().unwrap());
+    window.rest();
+    window.press("Save SVG…");
+    window.press("Save PNG…");
+    assert!(window.says("Saved the chart as"));
     for name in ["lace.svg", "lace.png"] {
         let facts = program.json(&["chart", "lace.purl", "-o", name]);
         assert_eq!(facts["rows"], 7);
         std::fs::write(picture_folder().join(format!("chart-{name}")), program.read(name)).unwrap();
     }
     assert!(program.read("lace.svg").starts_with(b"<svg "));
+    assert_eq!(program.read("saved.svg"), program.read("lace.svg"), "window and command line write the same");
+    assert_eq!(program.read("saved.png"), program.read("lace.png"));
     assert_eq!(program.json(&["chart", "lace.purl", "-o", "part.png", "--rows", "2..3"])["rows"], 2);
     for (arguments, says) in [
         (&["chart", "lace.purl", "-o", "lace.gif"][..], ".svg or .png"),

@@ -90,6 +90,21 @@ fn dots_of_a_purled_strand_are_not_covered() {
 }
 
 #[test]
+fn symbols_stay_in_their_squares() {
+    let symbols = swatches::STITCHES.iter().flat_map(|(_, symbols)| *symbols);
+    for symbol in symbols {
+        for (stitch, _) in split(&symbol.parse().unwrap()) {
+            let wide = stitch.tops().max(1) as f32;
+            let marks = glyph::of(&stitch);
+            assert!(!marks.is_empty() || stitch == Stitch::knit(), "{symbol}");
+            for [x, y] in marks.iter().flat_map(|m| &m.points) {
+                assert!((0.0..=wide).contains(x) && (0.0..=1.0).contains(y), "{symbol} at {x}, {y}");
+            }
+        }
+    }
+}
+
+#[test]
 fn rows_that_go_round_are_all_right_side_rows() {
     let chart = chart(&tube(7, 3, StitchSize::of_width(3e-3)).unwrap());
     assert!(chart.rows.iter().all(|r| r.right_side) && chart.repeat.is_none());
