@@ -5,11 +5,12 @@
 //! | `project` | what a project is, and its file |
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
 //! | `relax` | relaxing the stitch mesh of a project, and how even it is |
-//! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program, the contact sheet of stitches |
+//! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet`, `charts` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program, the contact sheet of stitches, knitting charts |
 //! | `cli` | the command line |
 //! | `window` | the same document with a mouse |
 
 pub mod bundled;
+pub mod charts;
 pub mod cli;
 pub mod command;
 pub mod document;

@@ -148,7 +148,8 @@ mod tests {
     #[test]
     fn words_are_found_in_any_order() {
         let found = |query: &str| ENTRIES.iter().filter(|e| e.matches(query)).count();
-        assert_eq!(found("fan feather"), 1);
+        assert_eq!(found("and fan feather"), found("feather and fan"));
+        assert!((1..5).contains(&found("fan feather")));
         assert!(found("cable") > 5 && found("lace") > 10 && found("nothing of the kind") == 0);
     }
 

@@ -55,7 +55,9 @@ impl Problem {
 /// All problems of a project: those of its labels, of its counts, and of its stitches.
 pub fn problems(project: &Project) -> Vec<Problem> {
     let labelled = &project.labelled;
-    let labels = labelled.problems().into_iter();
+    // A swatch was knitted from a pattern, not cut from a labelled mesh.
+    let knitted = project.fabric.is_some() && project.counts.is_none();
+    let labels = labelled.problems().into_iter().filter(|_| !knitted);
     let mut found: Vec<Problem> = labels.map(|p| Problem::at_face(Of::Input, p.face(), p.what())).collect();
     if let Some(counts) = &project.counts {
         found.extend(counts.unequal_wales(labelled).into_iter().map(|(face, left, right)| {

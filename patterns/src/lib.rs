@@ -2,6 +2,7 @@
 
 pub mod alternation;
 pub mod chart;
+pub mod diagram;
 pub mod instructions;
 pub mod knit;
 pub mod knitspeak;

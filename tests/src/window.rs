@@ -124,7 +124,10 @@ impl Window {
             egui::PanelState::load(&self.harness.ctx, self.harness.ui_id().with(name)).unwrap().outer_rect
         };
         let (top, status, left, right) = (panel("top"), panel("status"), panel("tools"), panel("facts"));
-        Rect::from_min_max(pos2(left.max.x, top.max.y), pos2(right.min.x, status.min.y))
+        // The chart, where it is open, stands on the status bar.
+        let chart = self.editor().chart_panel();
+        let below = chart.map_or(status.min.y, |chart| chart.min.y);
+        Rect::from_min_max(pos2(left.max.x, top.max.y), pos2(right.min.x, below))
     }
 
     /// Where a point of the fabric is on the screen, right after the button Front was pressed.

@@ -36,7 +36,9 @@ fn a_swatch_takes_the_place_of_everything() {
     window.harness.step();
     window.harness.get_by_label("Find a pattern").type_text("feather fan");
     window.rest();
-    window.press("Swatch");
+    let buttons: Vec<_> = window.harness.get_all_by_label("Swatch").collect();
+    buttons[0].click();
+    window.rest();
     let fabric = window.editor().project().fabric().map(|f| f.stitches.loop_count());
     assert_eq!(fabric.ok(), Some(36 * 4));
     window.press("Front");

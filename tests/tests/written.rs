@@ -61,7 +61,7 @@ fn the_patterns_beside_the_repository_come_out_as_they_say() {
         );
         assert!(text.lines().any(|line| line.starts_with(&said)), "{}: {facts}", path.display());
         // A line further on, the same once more: what is written for the swatch is knitted into the same swatch.
-        program.run(&["instructions", "x.purl", "-o", "again.ks"]);
+        program.json(&["instructions", "x.purl", "-o", "again.ks"]);
         program.json(&["swatch", "again.ks", "-o", "y.purl"]);
         let [first, again] = ["x.purl", "y.purl"].map(|file| program.json(&["inspect", file]));
         assert_eq!(first["stitches"], again["stitches"], "{}", path.display());
@@ -109,7 +109,7 @@ fn what_cannot_be_done_is_one_line() {
         assert!(run.stderr.contains(says), "{arguments:?}: {}", run.stderr);
     };
     program.write("short.ks", "Row 1 (RS): K4.\nRow 2: P5.\n");
-    fails(&["swatch", "short.ks", "-o", "x.purl"], "short.ks: line 2, column 8, row 2");
+    fails(&["swatch", "short.ks", "-o", "x.purl"], "short.ks: line 2, column 1, row 2");
     program.write("bobble.ks", "Row 1 (RS): K2, MB, k2.\n");
     fails(&["swatch", "bobble.ks", "-o", "x.purl"], "line 1, column 17, row 1: 'MB' cannot be held");
     program.write("eyelets.ks", EYELETS);

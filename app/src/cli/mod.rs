@@ -1,8 +1,10 @@
 //! The command line. Exit status: 0 done; 1 the input or the work failed, with one line on standard error; 2 wrong usage.
 
+mod chart;
 mod demo;
 mod interrupt;
 mod simulate;
+mod values;
 mod written;
 
 use crate::command::{Command, read_script};
@@ -12,7 +14,7 @@ use crate::inspect::inspect;
 use crate::project::{DEFAULT_STITCH_WIDTH, Project};
 use crate::{export, files, library, sheet};
 use anyhow::{Context, Result, bail};
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 use render::{Camera, Gpu, NamedView, render_image};
 use serde_json::json;
 use sim_core::curves;
@@ -21,6 +23,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::obj::Unit;
+use values::{RelaxStage, Solver, UnitName, parse_rows, parse_size};
 
 /// An editor for knitted fabric, with the yarn simulated live.
 #[derive(Parser)]
@@ -154,7 +157,7 @@ enum Verb {
         #[arg(short)]
         output: Option<PathBuf>,
         /// First and last row, from 0, as in 4..19; all rows if absent
-        #[arg(long, value_name = "A..B", value_parser = written::parse_rows)]
+        #[arg(long, value_name = "A..B", value_parser = parse_rows)]
         rows: Option<[usize; 2]>,
         #[command(flatten)]
         print: Output,
@@ -168,6 +171,17 @@ enum Verb {
     Library {
         #[arg(short, default_value = "out/patterns.png")]
         output: PathBuf,
+    },
+    /// Draws a knitting chart (.svg, .png)
+    Chart {
+        project: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        /// First and last row, from 0, as in 4..19; all rows if absent
+        #[arg(long, value_name = "A..B", value_parser = parse_rows)]
+        rows: Option<[usize; 2]>,
+        #[command(flatten)]
+        print: Output,
     },
     /// Facts about a project
     Inspect {
@@ -190,49 +204,6 @@ impl Output {
         let mut out = std::io::stdout();
         // A reader that has gone away (`| head`) does not want the rest; the work is done all the same.
         let _ = if self.json { writeln!(out, "{json}") } else { writeln!(out, "{text}") };
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum RelaxStage {
-    /// The stitch mesh on the smooth surface of the input; the yarn is laid again
-    Mesh,
-    /// The yarn with its contacts
-    Contact,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Solver {
-    Cpu,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum UnitName {
-    Mm,
-    Cm,
-    Dm,
-    M,
-    In,
-}
-
-impl From<UnitName> for Unit {
-    fn from(name: UnitName) -> Self {
-        match name {
-            UnitName::Mm => Self::Mm,
-            UnitName::Cm => Self::Cm,
-            UnitName::Dm => Self::Dm,
-            UnitName::M => Self::M,
-            UnitName::In => Self::In,
-        }
-    }
-}
-
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let (w, h) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 1280x960")?;
-    let side = |s: &str| s.parse().ok().filter(|n| (1..=16384).contains(n));
-    match (side(w), side(h)) {
-        (Some(w), Some(h)) => Ok([w, h]),
-        _ => Err(format!("'{text}' is not a size from 1x1 to 16384x16384")),
     }
 }
 
@@ -343,6 +314,7 @@ fn run(arguments: Arguments) -> Result<()> {
             bar.finish_and_clear();
             files::write_png(&output, &pictures)
         }
+        Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
 }

@@ -1,6 +1,7 @@
 //! The verbs of written patterns: `swatch`, `tile`, `instructions`.
 
 use super::Output;
+use super::values::parse_rows;
 use crate::command::Command;
 use crate::document::Document;
 use crate::files;
@@ -45,15 +46,6 @@ pub struct Where {
     /// straight, mirrored, alternating or half-drop
     #[arg(long, default_value = "straight", value_parser = parse_layout)]
     layout: Layout,
-}
-
-/// First and last row of `A..B`.
-pub fn parse_rows(text: &str) -> Result<[usize; 2], String> {
-    let (a, b) = text.split_once("..").ok_or("expected FIRST..LAST, as in 4..19")?;
-    match (a.parse(), b.parse()) {
-        (Ok(a), Ok(b)) if a <= b => Ok([a, b]),
-        _ => Err(format!("'{text}' is not a range of rows")),
-    }
 }
 
 #[derive(Clone)]

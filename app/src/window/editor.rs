@@ -3,6 +3,7 @@
 //! Each frame it looks whether the document or the simulation has something new, shows it, and turns clicks into requests. It
 //! never waits: the document lives in a [`Session`], the yarn in a [`SimThread`].
 
+use super::chart::ChartView;
 use super::navigation::Navigation;
 use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
@@ -44,6 +45,8 @@ pub struct Editor {
     pub(super) playing: bool,
     pub(super) panel: panels::State,
     pub(super) search: Option<Search>,
+    /// The chart, while it is open.
+    pub(super) chart: Option<ChartView>,
     /// The patch that was copied.
     pub(super) patch: Option<Patch>,
     /// Whether a text field had the keys in the last frame.
@@ -111,6 +114,7 @@ impl Editor {
             navigation: Navigation::default(),
             playing: false,
             search: None,
+            chart: None,
             patch: None,
             typing: false,
             selections: [Selection::new(Mode::Edge), Selection::new(Mode::Face)],
@@ -142,6 +146,7 @@ impl Editor {
         panels::status::show(self, ui);
         panels::left::show(self, ui);
         panels::right::show(self, ui);
+        super::chart::show(self, ui);
         self.load_yarn();
         // Keys and buttons may have gone to another stage: the pointer has to find the faces of that one.
         self.show_news();

@@ -63,6 +63,9 @@ impl Editor {
             *selection = Selection::new(selection.mode);
             self.under = None;
         }
+        if let Some(chart) = self.chart.as_mut().filter(|_| !same[1]) {
+            chart.part.clear();
+        }
     }
 
     /// Notes what the pointer is over.

@@ -2,6 +2,7 @@
 
 mod actions;
 mod catalogue;
+pub mod chart;
 mod clipboard;
 pub mod editor;
 mod legend;

@@ -53,7 +53,7 @@ pub fn use_tool(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
 fn work(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
     let pointer = response.hover_pos().or(response.interact_pointer_pos());
     let Some(at) = pointer else {
-        editor.point_at(None);
+        editor.point_at(super::chart::pointed(editor));
         return;
     };
     let local = at - rect.min;
@@ -80,7 +80,7 @@ fn work(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
 }
 
 /// The modifiers with which the button came up, if it has just done so: by the time of the frame they may be released.
-fn modifiers_of_click(input: &egui::InputState) -> Modifiers {
+pub(super) fn modifiers_of_click(input: &egui::InputState) -> Modifiers {
     let of = |event: &egui::Event| match event {
         egui::Event::PointerButton { pressed: false, modifiers, .. } => Some(*modifiers),
         _ => None,
@@ -184,11 +184,19 @@ fn covered(editor: &Editor, visible: &Visible, inside: impl Fn(Vec2) -> bool) ->
 }
 
 fn paint(editor: &mut Editor, response: &Response, held: bool, modifiers: Modifiers) {
-    // A quick click is over before the next frame sees the button.
-    let clicked = response.clicked() && editor.gesture.is_none();
-    let Some((half, _)) = editor.under.filter(|_| held || clicked) else { return };
+    let Some((half, _)) = editor.under.filter(|_| held || response.clicked()) else { return };
     let mode = if editor.selection().mode == Mode::Row { Mode::Row } else { Mode::Face };
-    let Picked::Faces(mut faces) = Picked::at(editor.surface(), half, mode, modifiers.alt) else { return };
+    let Picked::Faces(faces) = Picked::at(editor.surface(), half, mode, modifiers.alt) else { return };
+    paint_over(editor, faces, held, response.clicked());
+}
+
+/// Paints what a stroke has reached, where the stitch in the hand fits. All of a stroke is one step of the history.
+pub(super) fn paint_over(editor: &mut Editor, mut faces: Vec<FaceId>, held: bool, clicked: bool) {
+    // A quick click is over before the next frame sees the button.
+    let begins = clicked && editor.gesture.is_none();
+    if !(held || begins) {
+        return;
+    }
     let goes_on = if let Some(Gesture::Paint(reached)) = &editor.gesture {
         faces.retain(|f| !reached.contains(f));
         true

@@ -8,12 +8,14 @@
 //! relaxation, ends with its next step; other work runs out with nobody waiting for it.
 
 use super::view::{Survey, View};
+use crate::charts;
 use crate::command::{Command, write_script};
 use crate::document::Document;
 use crate::files;
 use crate::project::Project;
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
+use patterns::diagram::Course;
 use sim_core::mesh_relax::{MeshRelaxation, StepFacts};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -45,6 +47,8 @@ pub enum Request {
     Save(PathBuf),
     /// Save the history as a script.
     SaveScript(PathBuf),
+    /// Save a chart of some rows.
+    SaveChart(PathBuf, Vec<Course>),
 }
 
 impl Request {
@@ -56,7 +60,9 @@ impl Request {
             Self::Redo => "Redo".into(),
             Self::GoTo(_) => "Go through the history".into(),
             Self::Open(path) => format!("Open {}", path.display()),
-            Self::Save(path) | Self::SaveScript(path) => format!("Save {}", path.display()),
+            Self::Save(path) | Self::SaveScript(path) | Self::SaveChart(path, _) => {
+                format!("Save {}", path.display())
+            }
         }
     }
 }
@@ -253,6 +259,10 @@ impl Worker {
             Request::SaveScript(path) => {
                 files::write(&path, write_script(self.document.done())?.as_bytes())?;
                 Ok(format!("Saved the history as {}", path.display()))
+            }
+            Request::SaveChart(path, courses) => {
+                charts::write(&self.document.project().fabric()?.stitches, &courses, &path)?;
+                Ok(format!("Saved the chart as {}", path.display()))
             }
         }
     }

@@ -65,6 +65,32 @@ pub(super) const ACTIONS: &[Action] = &[
     Action::new("Grab", "Drag the yarn while it is simulated", |e| e.take(Tool::Grab))
         .key(Modifiers::NONE, Key::G)
         .at(&[Stage::Yarn]),
+    Action::new(
+        "Chart",
+        "Show the rows as a knitting chart, or put it away; a selection of several as it is now",
+        |e| {
+            e.toggle_chart();
+        },
+    )
+    .key(Modifiers::SHIFT, Key::C)
+    .at(FABRIC)
+    .unless(no_fabric),
+    Action::new("Chart all rows", "Show all rows of the lowest piece in the chart", |e| e.chart_part(false))
+        .at(FABRIC)
+        .unless(|e| e.chart.is_none().then_some("there is no chart")),
+    Action::new("Chart the selection", "Show the rows and columns around the selected stitches", |e| {
+        e.chart_part(true);
+    })
+    .at(FABRIC)
+    .unless(Editor::no_faces),
+    Action::new("Save chart as SVG", "Save the chart beside the project, as lines", |e| e.save_chart("svg"))
+        .at(FABRIC)
+        .unless(no_fabric),
+    Action::new("Save chart as PNG", "Save the chart beside the project, as a picture", |e| {
+        e.save_chart("png")
+    })
+    .at(FABRIC)
+    .unless(no_fabric),
     Action::new("Frame all", "Fit the view to everything", |e| e.frame(None)).key(Modifiers::NONE, Key::Home),
     Action::new("Frame selected", "Fit the view to what is selected", Editor::frame_selected)
         .key(Modifiers::NONE, Key::Period)

@@ -41,6 +41,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             for name in ["Front", "Back"] {
                 button(editor, ui, name);
             }
+            choice(editor, ui, "Chart", editor.chart.is_some());
             ui.menu_button("View", |ui| {
                 for name in ["Frame all", "Frame selected", "Left", "Right", "Top", "Three-quarter"] {
                     button(editor, ui, name);
