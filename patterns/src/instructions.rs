@@ -2,7 +2,8 @@
 //!
 //! The rows are followed from the lowest up with the loops that are on the needle. Each row has to work all of them from one end
 //! to the other; loops at the border that it leaves are bound off in it, and loops that it works without a stitch below them
-//! are cast on at the end of what was worked before. Flat pieces begin on the right side and are turned after every row, tubes
+//! are cast on at the end of what was worked before. Flat pieces begin on the right side, or where that leaves a
+//! stitch without a name on the wrong one, and are turned after every row, tubes
 //! are worked in rounds. A yarn-over that is part of a stitch is written beside it, as [`crate::knit`] would take it up again.
 //! What repeats in a row is written once.
 
@@ -72,28 +73,40 @@ pub fn instructions(stitches: &StitchMesh, rows: &[Row]) -> Result<Worked, Instr
             return Err(InstructionsError::Divides(row.faces[0]));
         }
     }
+    // Some stitches have a name on one side only: flat pieces may begin on either.
+    let right = told(&lines, rows, Side::Right);
+    match right {
+        Err(InstructionsError::Nameless { .. }) if !in_the_round => told(&lines, rows, Side::Wrong).or(right),
+        right => right,
+    }
+}
+
+/// Lines in the order of working, the first with this side facing.
+fn told(lines: &[Line], rows: &[Row], first: Side) -> Result<Worked, InstructionsError> {
     let cast_on = lines[0].iter().map(|(work, _)| work.uses()).sum();
+    let in_the_round = rows[0].closed;
     let mut before: usize = cast_on;
+    let mut side = first;
     let mut worked = Worked { cast_on, in_the_round, rows: Vec::new(), warnings: Vec::new() };
-    for (r, line) in lines.into_iter().enumerate() {
-        let side = if in_the_round || r % 2 == 0 { Side::Right } else { Side::Wrong };
+    for (r, line) in lines.iter().enumerate() {
         let mut steps = Vec::with_capacity(line.len());
         for (work, face) in line {
-            if !has_name(&work, side) {
-                let what = match &work {
+            if !has_name(work, side) {
+                let what = match work {
                     Work::Stitch(stitch) => stitch.to_string(),
                     _ => "this cable".to_owned(),
                 };
                 return Err(InstructionsError::Nameless { face: face.unwrap_or(rows[r].faces[0]), what });
             }
             before = before + work.makes() - work.uses();
-            steps.push(Step { what: work, span: 0..0 });
+            steps.push(Step { what: work.clone(), span: 0..0 });
         }
         if side == Side::Right {
             steps.reverse();
         }
         let repeats = repeats(&steps);
         worked.rows.push(WorkedRow { number: r + 1, side, steps, loops: before, repeats, span: 0..0 });
+        side = if in_the_round { side } else { side.other() };
     }
     Ok(worked)
 }
@@ -303,6 +316,12 @@ mod tests {
             let again = told(&first);
             assert_eq!(fabric(&again), first, "{text}\n{again}");
         }
+    }
+
+    #[test]
+    fn a_piece_may_begin_on_the_wrong_side() {
+        let text = told(&fabric("Row 1 (WS): Purl. Row 2: K2, sk2p, k2. Row 3: Purl."));
+        assert!(text.contains("(WS): Purl.") && text.contains("Row 2: K2, sk2p, k2."), "{text}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Every stitch is a face: a decrease has several bottoms, an increase several tops. A yarn-over has no loop below it, so it
 //! becomes a top of a stitch beside it, as the faces of Yuksel et al. (Table 1, Fig. 14) have it: of the stitch that is knitted
-//! into one loop, of two such of the one that makes fewer loops so far, and then of the one worked before. Only where there is
+//! into one loop, of two such of the one that makes fewer loops so far, and then of the one on its right. Only where there is
 //! none it goes to a decrease, which then makes two loops out of its own.
 //!
 //! Rows that shrink, grow, bind off, cast on and turn are worked on a [`Needle`]. What a mesh cannot hold is an error that names
@@ -75,24 +75,26 @@ pub(crate) fn items_of_row(row: &WorkedRow) -> Result<Vec<Item>, Fault> {
 }
 
 fn items(steps: &[Step], side: Side) -> Result<Vec<Item>, Fault> {
-    let mut items: Vec<Item> = steps.iter().map(item).collect::<Result<_, _>>()?;
+    // From right to left as seen from the front, whatever side was worked: so the same fabric comes out of both.
+    let mut worked: Vec<&Step> = steps.iter().collect();
+    if side == Side::Wrong {
+        worked.reverse();
+    }
+    let mut items: Vec<Item> = worked.iter().map(|step| item(step)).collect::<Result<_, _>>()?;
     for i in 0..items.len() {
         let Some(made) = yarn_over(&items[i]) else { continue };
         let Some(parent) = parent(&items, i) else {
-            return Err(Fault::new(steps[i].span.clone(), NeedleError::Alone.to_string()));
+            return Err(Fault::new(worked[i].span.clone(), NeedleError::Alone.to_string()));
         };
-        let after = parent < i;
-        // What is worked later lies on the left on the right side, and on the right on the wrong side.
-        let on_left = after == (side == Side::Right);
+        let on_left = parent < i;
         if let Some(stitch) = nearest(&mut items[parent], on_left) {
-            let place = if on_left { 0 } else { stitch.ops.len() };
-            stitch.ops.insert(place, made);
+            // Beside what the stitch makes of its own; those on its right come from right to left.
+            let own = stitch.ops.iter().rposition(|op| op.make != Make::YarnOver).map_or(0, |last| last + 1);
+            stitch.ops.insert(if on_left { 0 } else { own }, made);
         }
     }
     items.retain(|item| yarn_over(item).is_none());
-    if side == Side::Right {
-        items.reverse();
-    }
+    items.reverse();
     Ok(items)
 }
 
@@ -139,10 +141,10 @@ fn parent(items: &[Item], i: usize) -> Option<usize> {
     let beside = |mut others: Box<dyn Iterator<Item = usize>>| {
         others.find(|j| yarn_over(&items[*j]).is_none()).filter(|j| burden(&items[*j]).is_some())
     };
-    let before = beside(Box::new((0..i).rev()));
-    let after = beside(Box::new(i + 1..items.len()));
+    let right = beside(Box::new((0..i).rev()));
+    let left = beside(Box::new(i + 1..items.len()));
     // Of equals the first.
-    [before, after].into_iter().flatten().min_by_key(|j| burden(&items[*j]))
+    [right, left].into_iter().flatten().min_by_key(|j| burden(&items[*j]))
 }
 
 /// How unlike a plain stitch a possible parent is; none for what makes no stitch.

@@ -116,7 +116,7 @@ fn what_cannot_be_done_is_one_line() {
     program.json(&["swatch", "eyelets.ks", "-o", "a.purl"]);
     fails(&["tile", "a.purl", "missing.ks", "-o", "x.purl"], "missing.ks");
     program.write("wide.ks", "Row 1 (RS): *K20, p20, repeat from *. Row 2: *K20, p20, repeat from *.");
-    fails(&["tile", "a.purl", "wide.ks", "-o", "x.purl"], "needs 40 stitches side by side and 1 rows");
+    fails(&["tile", "a.purl", "wide.ks", "-o", "x.purl"], "needs 40 stitches side by side and 2 rows");
     fails(&["tile", "a.purl", "eyelets.ks", "-o", "x.purl", "--rows", "1..9"], "there are no rows 1–9");
     program.json(&["new", &asset("pullover"), "-o", "p.purl"]);
     fails(&["instructions", "p.purl"], "stitch ");

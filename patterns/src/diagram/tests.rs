@@ -1,9 +1,9 @@
 //! Charts of small pieces of fabric.
 
 use super::*;
-use stitch_mesh::catalogue;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::pieces::{from_rows, tube};
+use stitch_mesh::{catalogue, swatches};
 
 fn piece(rows: &[&str]) -> StitchMesh {
     let row = |text: &&str| text.split_whitespace().map(|s| s.parse().unwrap()).collect();
