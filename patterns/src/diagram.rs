@@ -2,7 +2,7 @@
 //!
 //! A cell is as wide as the loops it makes, so a decrease takes one square and an increase as many as it makes; a stitch with
 //! yarn-overs beside it is shown as its parts. Rows with fewer squares than the widest are filled up with "no stitch"
-//! squares, so that what is knitted into a loop stands above it; see [`grid`].
+//! squares, so that what is knitted into a loop stands above it; see `grid`.
 //!
 //! What a symbol looks like is in [`glyph`]; a drawing is a list of marks ([`mark`]), which become SVG, pixels, or the
 //! shapes of a window.

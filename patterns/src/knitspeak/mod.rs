@@ -13,10 +13,10 @@
 //! ```
 //!
 //! # Theory
-//! The text is cut into tokens ([`lex`]), sentences ([`parse`]), items ([`items`]) and amounts ([`amounts`]), and names are
-//! looked up ([`vocabulary`], [`cable`]). [`order`] puts the rows into the order in which they are worked, [`measure`] counts
-//! the loops that each works and makes, [`solve`] finds the cast-ons that fit, and [`work`] works the rows. A wrong-side row is
-//! read as it is worked and turned over stitch by stitch ([`term`]), so that what comes out is always the fabric as seen from
+//! The text is cut into tokens (`lex`), sentences (`parse`), items (`items`) and amounts (`amounts`), and names are
+//! looked up (`vocabulary`, `cable`). `order` puts the rows into the order in which they are worked, `measure` counts
+//! the loops that each works and makes, `solve` finds the cast-ons that fit, and `work` works the rows. A wrong-side row is
+//! read as it is worked and turned over stitch by stitch (`term`), so that what comes out is always the fabric as seen from
 //! the front. [`write()`] is the way back.
 //!
 //! # Practice

@@ -73,7 +73,7 @@ fn fabric(editor: &mut Editor, ui: &mut Ui) {
         Tab::Simulate if !in_yarn => Tab::Palette,
         tab => tab,
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (shown, name, what) in [
             (Tab::Palette, "Palette", "Kinds of stitches, and patterns of knit and purl"),
             (Tab::Library, "Library", "Written patterns, to be tiled over the fabric"),
