@@ -18,14 +18,14 @@ const NAMES: [(&str, &str, &str); 36] = [
     ("p1", "p tbl", "purl through the back loop"),
     ("s", "sl wyib", "slipped, yarn behind"),
     ("x", "sl woven", "slipped, yarn woven through its legs"),
-    ("sk", "sl, k", "slipped and knitted into"),
-    ("ks", "k, sl", "knitted into and slipped"),
+    ("sk", "k, sl", "knitted into, then slipped"),
+    ("ks", "sl, k", "slipped, then knitted into"),
     ("pk", "kfb", "knit into the front and back of one (bar increase)"),
     ("kp", "pfb", "purl into the front and back of one; (p1, k1) in one"),
-    ("ky", "k1, yo", "knit, yarn-over"),
-    ("yk", "yo, k1", "yarn-over, knit"),
-    ("py", "p1, yo", "purl, yarn-over"),
-    ("yp", "yo, p1", "yarn-over, purl"),
+    ("ky", "yo, k1", "yarn-over, knit"),
+    ("yk", "k1, yo", "knit, yarn-over"),
+    ("py", "yo, p1", "yarn-over, purl"),
+    ("yp", "p1, yo", "purl, yarn-over"),
     ("kyk", "k-yo-k", "knit, yarn-over, knit into one"),
     ("kpk", "k-p-k", "knit, purl, knit into one"),
     ("pkp", "p-k-p", "purl, knit, purl into one"),
@@ -63,7 +63,8 @@ impl Stitch {
         if self.ops.is_empty() {
             return format!("{} gathered on the yarn of the row", loops(self.bottoms()));
         }
-        let made = self.ops.iter().map(|op| {
+        // As it is worked on the right side: from right to left.
+        let made = self.ops.iter().rev().map(|op| {
             let made = match op.make {
                 Make::Knit => "knit",
                 Make::Purl => "purl",
@@ -108,7 +109,7 @@ mod tests {
             assert_eq!((&*stitch.abbreviation(), &*stitch.description()), (abbreviation, description));
         }
         let described = |symbol: &str| symbol.parse::<Stitch>().unwrap().description();
-        assert_eq!(described("k-1y"), "knit twisted counter-clockwise, yarn-over");
+        assert_eq!(described("k-1y"), "yarn-over, knit twisted counter-clockwise");
         assert_eq!(
             described("d132k"),
             "knit through 3 loops together, from front to back 1, 3, 2 counted from the left"
