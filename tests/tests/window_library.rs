@@ -1,5 +1,7 @@
 //! The pattern library in the window.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, which clippy cannot see")]
+
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use tests::window::fabric;
@@ -43,6 +45,15 @@ fn a_swatch_takes_the_place_of_everything() {
     assert_eq!(fabric.ok(), Some(36 * 4));
     window.press("Front");
     window.keep("library-swatch");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fan.purl");
+    window.harness.get_by_label("Path").focus();
+    window.harness.step();
+    window.harness.get_by_label("Path").type_text(path.to_str().unwrap());
+    window.rest();
+    window.press("Save instructions");
+    let told = std::fs::read_to_string(path.with_extension("ks")).unwrap();
+    assert!(told.starts_with("# Cast on 36 stitches.") && told.contains("[yo, k1]"), "{told}");
     window.key(Modifiers::NONE, Key::Escape);
     window.key(Modifiers::COMMAND, Key::Z);
     assert!(window.editor().project().labelled.mesh().face_count() < 100, "back at the mesh");

@@ -348,6 +348,12 @@ impl Editor {
         self.request(Request::SaveScript(path));
     }
 
+    /// Saves knitting instructions beside the project.
+    pub(super) fn save_instructions(&mut self) {
+        let path = PathBuf::from(self.panel.path.trim()).with_extension("ks");
+        self.request(Request::SaveInstructions(path));
+    }
+
     /// Cuts the mesh into stitches: of the width in the panel where it was changed, or as edges are counted now.
     pub(super) fn tessellate(&mut self) {
         let changed = std::mem::take(&mut self.panel.width_changed);

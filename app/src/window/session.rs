@@ -13,6 +13,7 @@ use crate::command::{Command, write_script};
 use crate::document::Document;
 use crate::files;
 use crate::project::Project;
+use crate::written::{tiled, told};
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use patterns::diagram::Course;
@@ -45,6 +46,8 @@ pub enum Request {
     Open(PathBuf),
     /// Save the project.
     Save(PathBuf),
+    /// Save knitting instructions.
+    SaveInstructions(PathBuf),
     /// Save the history as a script.
     SaveScript(PathBuf),
     /// Save a chart of some rows.
@@ -60,7 +63,10 @@ impl Request {
             Self::Redo => "Redo".into(),
             Self::GoTo(_) => "Go through the history".into(),
             Self::Open(path) => format!("Open {}", path.display()),
-            Self::Save(path) | Self::SaveScript(path) | Self::SaveChart(path, _) => {
+            Self::Save(path)
+            | Self::SaveScript(path)
+            | Self::SaveInstructions(path)
+            | Self::SaveChart(path, _) => {
                 format!("Save {}", path.display())
             }
         }
@@ -256,6 +262,10 @@ impl Worker {
                 self.path = Some(path);
                 Ok(message)
             }
+            Request::SaveInstructions(path) => {
+                files::write(&path, told(self.document.project(), None)?.as_bytes())?;
+                Ok(format!("Saved the instructions as {}", path.display()))
+            }
             Request::SaveScript(path) => {
                 files::write(&path, write_script(self.document.done())?.as_bytes())?;
                 Ok(format!("Saved the history as {}", path.display()))
@@ -286,7 +296,12 @@ impl Worker {
             ControlFlow::Continue(())
         };
         let after = self.unless_cancelled(move || doing.perform(&before, &mut watch))?;
-        let name = command.name();
+        let mut name = command.name();
+        if let Command::Tile { text, rows, faces, layout } = &command {
+            // What did not fit is not an error, but nobody would guess it.
+            let tiled = tiled(self.document.project(), text, *rows, faces.as_deref(), *layout)?;
+            name = std::iter::once(name).chain(tiled.left_out).collect::<Vec<_>>().join(" · ");
+        }
         self.document.keep(command, after, amends);
         Ok(name)
     }

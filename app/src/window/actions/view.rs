@@ -24,6 +24,12 @@ pub(super) const ACTIONS: &[Action] = &[
         Editor::save_script,
     )
     .unless(no_history),
+    Action::new(
+        "Save instructions",
+        "Write how the fabric is knitted, row by row, beside the project",
+        Editor::save_instructions,
+    )
+    .unless(no_fabric),
     Action::new("Undo", "Take back the last step", |e| e.request(Request::Undo))
         .key(Modifiers::COMMAND, Key::Z)
         .unless(no_history),

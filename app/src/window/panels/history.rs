@@ -30,5 +30,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
     if let Some(steps) = wanted {
         editor.request(Request::GoTo(steps));
     }
-    button(editor, ui, "Save script");
+    ui.horizontal_wrapped(|ui| {
+        button(editor, ui, "Save script");
+        button(editor, ui, "Save instructions");
+    });
 }
