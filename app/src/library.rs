@@ -100,7 +100,7 @@ fn high(text: &str) -> Result<Project> {
 fn picture(gpu: &Gpu, text: &str) -> Result<RgbaImage> {
     /// Simulated time [s], and part of the swatch that shows.
     const TIME: f64 = 0.15;
-    const SHOWN: f32 = 0.46;
+    const SHOWN: f32 = 0.27;
     let project = high(text)?;
     let Fabric { stitches, net, .. } = project.fabric()?;
     let material = project.material.clone();
