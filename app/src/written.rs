@@ -1,7 +1,7 @@
 //! Written patterns and projects: a swatch of a pattern, a pattern tiled over a fabric, instructions for a fabric.
 
 use crate::project::{Fabric, Project};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use patterns::instructions::instructions;
 use patterns::knit::knit;
 use patterns::knitspeak::{Pattern, Width, Worked, WorkedRow, write};
@@ -105,16 +105,36 @@ pub fn tiled(
     Ok(tile(stitches, &all, &region, &Pattern::read(text)?, layout)?)
 }
 
-/// Instructions for a fabric, or for some of its rows.
+/// Instructions for a fabric, or for some of its rows and faces.
 ///
 /// # Errors
 /// Which stitch cannot be knitted by hand, and why.
-pub fn told(project: &Project, rows: Option<[usize; 2]>) -> Result<String> {
+pub fn told(project: &Project, rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Result<String> {
     let stitches = &project.fabric()?.stitches;
     let all = stitches.rows();
-    let [first, last] = rows.unwrap_or([0, all.len().saturating_sub(1)]);
-    let chosen = all.get(first..=last).with_context(|| format!("there are no rows {first}–{last}"))?;
-    let worked = instructions(stitches, chosen)?;
+    let region = region(&all, rows, faces)?;
+    let part = |row: &Row| -> Option<Result<Row>> {
+        let n = row.faces.len();
+        let is_in = |i: usize| region.contains(&row.faces[i % n]);
+        let count = (0..n).filter(|i| is_in(*i)).count();
+        if count == n || count == 0 {
+            return (count > 0).then(|| Ok(row.clone()));
+        }
+        let begins = |i: &usize| is_in(*i) && !((*i > 0 || row.closed) && is_in(i + n - 1));
+        let first = (0..n).find(begins)?;
+        let faces: Vec<FaceId> =
+            (first..first + n).take_while(|i| is_in(*i)).map(|i| row.faces[i % n]).collect();
+        Some(if faces.len() == count {
+            Ok(Row { faces, closed: false })
+        } else {
+            Err(anyhow!(
+                "stitch {}: the chosen stitches of its row do not all lie side by side",
+                row.faces[first].0
+            ))
+        })
+    };
+    let chosen: Vec<Row> = all.iter().filter_map(part).collect::<Result<_>>()?;
+    let worked = instructions(stitches, &chosen)?;
     let left = worked.rows.last().map_or(worked.cast_on, |row| row.loops);
     let joined = if worked.in_the_round { " and join in the round" } else { "" };
     Ok(format!(

@@ -8,7 +8,7 @@
 //! What repeats in a row is written once.
 
 use crate::knitspeak::{Crossing, Side, Step, Work, Worked, WorkedRow, has_name};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::ids::{EdgeId, FaceId};
@@ -51,7 +51,8 @@ pub enum InstructionsError {
 /// A row while it is followed: what is worked, left to right, each with the face it is for.
 type Line = Vec<(Work, Option<FaceId>)>;
 
-/// What has to be worked to knit these rows of a fabric, the lowest first as in [`StitchMesh::rows`].
+/// What has to be worked to knit these rows of a fabric, the lowest first as in [`StitchMesh::rows`], or these parts of them. They
+/// are told as a piece of their own: what lies around them does not count.
 ///
 /// # Errors
 /// [`InstructionsError`].
@@ -61,11 +62,17 @@ pub fn instructions(stitches: &StitchMesh, rows: &[Row]) -> Result<Worked, Instr
     if let Some(other) = rows.iter().find(|row| row.closed != in_the_round) {
         return Err(InstructionsError::Mixed(other.faces[0]));
     }
+    let inside: HashSet<FaceId> = rows.iter().flat_map(|row| row.faces.iter().copied()).collect();
+    let mesh = stitches.mesh();
+    let is_edge = |edge: EdgeId| {
+        let (first, twin) = mesh.edge_sides(edge);
+        twin.is_none_or(|twin| !inside.contains(&mesh.face(first)) || !inside.contains(&mesh.face(twin)))
+    };
     let mut lines: Vec<Line> = Vec::with_capacity(rows.len());
     let mut needle: Vec<Loop> = Vec::new();
     for (r, row) in rows.iter().enumerate() {
         let last = r + 1 == rows.len();
-        let mut line = follow(stitches, row, &needle, lines.last_mut())?;
+        let mut line = follow(stitches, row, &needle, &is_edge, lines.last_mut())?;
         crossed(stitches, &mut line)?;
         needle = loops(stitches, &line);
         lines.push(line);
@@ -124,6 +131,7 @@ fn follow(
     stitches: &StitchMesh,
     row: &Row,
     needle: &[Loop],
+    is_edge: &impl Fn(EdgeId) -> bool,
     mut before: Option<&mut Line>,
 ) -> Result<Line, InstructionsError> {
     let mesh = stitches.mesh();
@@ -133,7 +141,7 @@ fn follow(
     let mut cast_on = 0;
     // Loops that are passed over are bound off, if they wait for nobody.
     let pass = |line: &mut Line, from: usize, to: usize| -> Result<(), InstructionsError> {
-        if let Some(waiting) = needle[from..to].iter().find(|l| !mesh.is_border(l.edge)) {
+        if let Some(waiting) = needle[from..to].iter().find(|l| !is_edge(l.edge)) {
             return Err(InstructionsError::Divides(waiting.by));
         }
         if to > from {
@@ -150,7 +158,7 @@ fn follow(
                     at = i + 1;
                 }
                 (None, None) => {}
-                (None, Some(line)) if mesh.is_border(edge) => {
+                (None, Some(line)) if is_edge(edge) => {
                     // After what made the loop before it, and what has been cast on since.
                     let made_at = at.checked_sub(1).map_or(0, |i| needle[i].made_at + 1);
                     line.insert(made_at + cast_on, (Work::CastOn(1), None));
@@ -160,6 +168,9 @@ fn follow(
             }
         }
         line.extend(parts(stitches.stitch(*face)).into_iter().map(|work| (work, Some(*face))));
+    }
+    if before.is_some() && at == 0 {
+        return Err(InstructionsError::Elsewhere(row.faces[0])); // nothing holds the row to what lies below
     }
     pass(&mut line, at, needle.len())?;
     if let Some(line) = before {
@@ -319,6 +330,17 @@ mod tests {
     }
 
     #[test]
+    fn a_part_is_told_as_a_piece_of_its_own() {
+        let flat = fabric(
+            "# check: cast on 8, rows 4, most stitches 8\nRow 1 (RS): *K1, p1, repeat from *. Row 2: *K1, p1, repeat from *.",
+        );
+        let part = |row: &Row| Row { faces: row.faces[2..6].to_vec(), closed: false };
+        let rows: Vec<Row> = flat.rows().iter().map(part).collect();
+        let told = write(&instructions(&flat, &rows).unwrap());
+        assert!(told.contains("cast on 4,") && told.contains("*K1, p1, repeat from *."), "{told}");
+    }
+
+    #[test]
     fn a_piece_may_begin_on_the_wrong_side() {
         let text = told(&fabric("Row 1 (WS): Purl. Row 2: K2, sk2p, k2. Row 3: Purl."));
         assert!(text.contains("(WS): Purl.") && text.contains("Row 2: K2, sk2p, k2."), "{text}");
@@ -328,6 +350,9 @@ mod tests {
     fn what_cannot_be_knitted_in_rows_is_named() {
         let flat = rectangle(4, 4, SIZE).unwrap();
         let rows = flat.rows();
+        let aside =
+            [rows[0].clone(), Row { faces: rows[1].faces[..2].to_vec(), closed: false }, rows[2].clone()];
+        assert!(instructions(&flat, &aside).is_ok(), "two loops are bound off, and cast on again");
         let skipping = [rows[0].clone(), rows[2].clone()];
         assert!(matches!(instructions(&flat, &skipping), Err(InstructionsError::Elsewhere(FaceId(8)))));
         let hole = fabric("Row 1 (RS): Knit. Row 2: P3, BO 2 sts, p3. Row 3: K4, CO 2 sts, k3. Row 4: Purl.");

@@ -159,6 +159,9 @@ enum Verb {
         /// First and last row, from 0, as in 4..19; all rows if absent
         #[arg(long, value_name = "A..B", value_parser = parse_rows)]
         rows: Option<[usize; 2]>,
+        /// Stitches, as in 3,7,20-39; all of the rows if absent
+        #[arg(long, value_name = "F", value_parser = written::parse_faces)]
+        faces: Option<written::Faces>,
         #[command(flatten)]
         print: Output,
     },
@@ -299,8 +302,8 @@ fn run(arguments: Arguments) -> Result<()> {
         Verb::Tile { project, pattern, output, place, print } => {
             written::tile(&project, &pattern, place, &output, print)
         }
-        Verb::Instructions { project, output, rows, print } => {
-            written::instructions(&project, rows, output.as_deref(), print)
+        Verb::Instructions { project, output, rows, faces, print } => {
+            written::instructions(&project, rows, faces, output.as_deref(), print)
         }
         Verb::Stitches { output } => {
             let bar = interrupt::step_counter("swatches")?;

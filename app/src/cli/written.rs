@@ -48,10 +48,12 @@ pub struct Where {
     layout: Layout,
 }
 
+/// Stitches by number.
 #[derive(Clone)]
-struct Faces(Vec<u32>);
+pub struct Faces(Vec<u32>);
 
-fn parse_faces(text: &str) -> Result<Faces, String> {
+/// Stitches of a list like `3,7,20-39`.
+pub fn parse_faces(text: &str) -> Result<Faces, String> {
     let mut faces = Vec::new();
     for part in text.split(',') {
         let (a, b) = part.split_once('-').unwrap_or((part, part));
@@ -175,10 +177,13 @@ pub fn tile(project: &Path, pattern: &Path, place: Where, output: &Path, print: 
 pub fn instructions(
     project: &Path,
     rows: Option<[usize; 2]>,
+    faces: Option<Faces>,
     output: Option<&Path>,
     print: Output,
 ) -> Result<()> {
-    let text = told(&Project::open(project)?, rows).with_context(|| project.display().to_string())?;
+    let faces = faces.map(|f| f.0);
+    let text = told(&Project::open(project)?, rows, faces.as_deref())
+        .with_context(|| project.display().to_string())?;
     if let Some(output) = output {
         files::write(output, text.as_bytes())?;
     }

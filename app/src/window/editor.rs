@@ -348,10 +348,12 @@ impl Editor {
         self.request(Request::SaveScript(path));
     }
 
-    /// Saves knitting instructions beside the project.
+    /// Saves knitting instructions beside the project: for what is selected, or for everything.
     pub(super) fn save_instructions(&mut self) {
         let path = PathBuf::from(self.panel.path.trim()).with_extension("ks");
-        self.request(Request::SaveInstructions(path));
+        let selected = &self.selection().faces;
+        let faces = (!selected.is_empty()).then(|| selected.iter().map(|f| f.0).collect());
+        self.request(Request::SaveInstructions(path, faces));
     }
 
     /// Cuts the mesh into stitches: of the width in the panel where it was changed, or as edges are counted now.

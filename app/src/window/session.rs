@@ -46,8 +46,8 @@ pub enum Request {
     Open(PathBuf),
     /// Save the project.
     Save(PathBuf),
-    /// Save knitting instructions.
-    SaveInstructions(PathBuf),
+    /// Save knitting instructions, for all or for some stitches.
+    SaveInstructions(PathBuf, Option<Vec<u32>>),
     /// Save the history as a script.
     SaveScript(PathBuf),
     /// Save a chart of some rows.
@@ -65,7 +65,7 @@ impl Request {
             Self::Open(path) => format!("Open {}", path.display()),
             Self::Save(path)
             | Self::SaveScript(path)
-            | Self::SaveInstructions(path)
+            | Self::SaveInstructions(path, _)
             | Self::SaveChart(path, _) => {
                 format!("Save {}", path.display())
             }
@@ -262,8 +262,9 @@ impl Worker {
                 self.path = Some(path);
                 Ok(message)
             }
-            Request::SaveInstructions(path) => {
-                files::write(&path, told(self.document.project(), None)?.as_bytes())?;
+            Request::SaveInstructions(path, faces) => {
+                let text = told(self.document.project(), None, faces.as_deref())?;
+                files::write(&path, text.as_bytes())?;
                 Ok(format!("Saved the instructions as {}", path.display()))
             }
             Request::SaveScript(path) => {

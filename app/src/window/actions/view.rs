@@ -26,7 +26,7 @@ pub(super) const ACTIONS: &[Action] = &[
     .unless(no_history),
     Action::new(
         "Save instructions",
-        "Write how the fabric is knitted, row by row, beside the project",
+        "Write how the fabric or the selection is knitted, row by row, beside the project",
         Editor::save_instructions,
     )
     .unless(no_fabric),
