@@ -19,6 +19,7 @@ pub mod export;
 pub mod files;
 pub mod inspect;
 pub mod library;
+pub mod open;
 pub mod preview;
 pub mod problems;
 pub mod project;

@@ -7,10 +7,8 @@
 //! follows from the stitch mesh; the state of the yarn has to fit it.
 
 use crate::files;
-use crate::written::swatch;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
-use patterns::knitspeak::Width;
 use serde::{Deserialize, Serialize};
 use sim_core::{Facts, Material, Scene, carry_over};
 use std::path::Path;
@@ -127,25 +125,6 @@ impl Project {
     /// A file that is not a project, is cut off, or is of a newer version, with line and column where there is one.
     pub fn open(path: &Path) -> Result<Self> {
         Self::from_json(&files::read(path)?).with_context(|| path.display().to_string())
-    }
-
-    /// Opens a project, or a mesh in metres or a swatch of a written pattern as a new project.
-    ///
-    /// # Errors
-    /// As [`Self::open`] and [`Self::from_obj`]; a file of another kind.
-    pub fn open_any(path: &Path) -> Result<Self> {
-        match path.extension().and_then(|e| e.to_str()) {
-            Some("purl") => Self::open(path),
-            Some("obj") => Self::from_obj(path, Unit::M, StitchSize::of_width(DEFAULT_STITCH_WIDTH)),
-            Some("ks") => {
-                let text =
-                    String::from_utf8(files::read(path)?).with_context(|| path.display().to_string())?;
-                let knitted =
-                    swatch(&text, Width::AsWritten, 1).with_context(|| path.display().to_string())?;
-                Ok(knitted.0)
-            }
-            _ => bail!("cannot open {}: the name has to end in .purl, .obj or .ks", path.display()),
-        }
     }
 
     /// Writes a `.purl` file, whole or not at all.

@@ -11,6 +11,7 @@ use crate::command::{Command, read_script};
 use crate::document::Document;
 use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
+use crate::open::open_any;
 use crate::project::{DEFAULT_STITCH_WIDTH, Project};
 use crate::{export, files, library, sheet};
 use anyhow::{Context, Result, bail};
@@ -239,7 +240,7 @@ fn listen_to_warnings() {
 
 fn run(arguments: Arguments) -> Result<()> {
     let Some(verb) = arguments.verb else {
-        let project = arguments.file.as_deref().map(Project::open_any).transpose()?;
+        let project = arguments.file.as_deref().map(open_any).transpose()?;
         return crate::window::run(project, arguments.file);
     };
     match verb {

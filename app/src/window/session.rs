@@ -12,6 +12,7 @@ use crate::charts;
 use crate::command::{Command, write_script};
 use crate::document::Document;
 use crate::files;
+use crate::open::open_any;
 use crate::project::Project;
 use crate::written::{tiled, told};
 use anyhow::{Context, Result, bail};
@@ -251,7 +252,7 @@ impl Worker {
             }
             Request::Open(path) => {
                 let file = path.clone();
-                self.document = Document::new(self.unless_cancelled(move || Project::open_any(&file))?);
+                self.document = Document::new(self.unless_cancelled(move || open_any(&file))?);
                 let message = format!("Opened {}", path.display());
                 self.path = Some(path);
                 Ok(message)
