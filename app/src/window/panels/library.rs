@@ -37,7 +37,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         ui.label(RichText::new(over).weak());
     });
     ui.horizontal(|ui| {
-        let state = &mut editor.panel.library;
+        let state = &mut editor.panel.written;
         let field = egui::TextEdit::singleline(&mut state.query).hint_text("find").desired_width(84.0);
         let field =
             ui.add(field).on_hover_text("Words of the name, the kind (lace, rib, cable) or the source");
@@ -55,7 +55,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         response.response.on_hover_text("How repeats lie beside each other");
         state.layout = chosen;
     });
-    let query = editor.panel.library.query.clone();
+    let query = editor.panel.written.query.clone();
     let pictures = pictures(editor, ui);
     for (i, entry) in ENTRIES.iter().enumerate().filter(|(_, entry)| entry.matches(&query)) {
         row(editor, ui, (i, entry), &pictures);
@@ -64,7 +64,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
 
 /// The pictures on the GPU; loaded when they are first shown.
 fn pictures(editor: &mut Editor, ui: &Ui) -> Option<TextureHandle> {
-    let slot = &mut editor.panel.library.pictures;
+    let slot = &mut editor.panel.written.pictures;
     if slot.is_none() {
         let decoded = image::load_from_memory(PICTURES).ok()?.to_rgba8();
         let size = [decoded.width() as usize, decoded.height() as usize];
@@ -118,7 +118,7 @@ fn row(
 fn tile(editor: &mut Editor, entry: &Entry) {
     let selected = &editor.selection().faces;
     let faces = (!selected.is_empty()).then(|| selected.iter().map(|f| f.0).collect());
-    let layout = editor.panel.library.layout;
+    let layout = editor.panel.written.layout;
     editor.act(Command::Tile { text: entry.text.to_owned(), rows: None, faces, layout });
 }
 

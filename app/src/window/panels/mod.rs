@@ -51,7 +51,7 @@ pub struct State {
     /// Which tools the left panel shows.
     pub tab: left::Tab,
     /// The pattern library.
-    pub library: library::State,
+    pub written: library::State,
     /// Numbers of the alternations.
     pub alternation: patterns::Numbers,
 }
@@ -72,7 +72,7 @@ impl State {
             tab: left::Tab::Simulate,
             brush_radius: 30.0,
             palette_filter: String::new(),
-            library: library::State::default(),
+            written: library::State::default(),
             alternation: patterns::Numbers::default(),
         }
     }
