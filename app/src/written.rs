@@ -28,6 +28,15 @@ pub struct SwatchFacts {
     pub warnings: Vec<String>,
 }
 
+/// How wide a pattern is knitted and how often its rows: so many stitches, so many repeats, or as its text says.
+pub fn extent(cast_on: Option<usize>, repeats: Option<[usize; 2]>) -> (Width, usize) {
+    match (cast_on, repeats) {
+        (Some(n), _) => (Width::CastOn(n), 1),
+        (None, Some([wide, high])) => (Width::Repeats(wide), high),
+        (None, None) => (Width::AsWritten, 1),
+    }
+}
+
 /// A piece knitted from a written pattern, worked `high` times over its rows, as a project of its own.
 ///
 /// # Errors

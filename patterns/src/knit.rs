@@ -71,6 +71,11 @@ fn stretch(needle: &mut Needle, at: usize, steps: &[Step], side: Side) -> Result
 /// A row that is worked from one end to the other, left to right as seen from the front, with yarn-overs in the stitches that
 /// hold them.
 pub(crate) fn items_of_row(row: &WorkedRow) -> Result<Vec<Item>, Fault> {
+    let at_edge = |step: &&Step| matches!(step.what, Work::BindOff(_) | Work::CastOn(_) | Work::Turn { .. });
+    if let Some(step) = row.steps.iter().find(at_edge) {
+        let message = "loops are bound off or cast on here, or the row is turned: it can be knitted as a swatch, but not tiled";
+        return Err(Fault::new(step.span.clone(), message).in_row(row.number));
+    }
     items(&row.steps, row.side).map_err(|fault| fault.in_row(row.number))
 }
 
@@ -108,7 +113,8 @@ fn item(step: &Step) -> Result<Item, Fault> {
         }
         Work::BindOff(n) => Item::BindOff(*n),
         Work::CastOn(n) => Item::CastOn(*n),
-        Work::Turn { .. } => Item::CastOn(0), // split off before
+        // Rows are split at their turns before.
+        Work::Turn { .. } => return Err(Fault::new(step.span.clone(), "the row is turned here")),
         Work::Special { name, .. } => {
             let message = format!("'{name}' cannot be held by a stitch mesh, whose rows are one loop high");
             return Err(Fault::new(step.span.clone(), message));

@@ -7,9 +7,9 @@ use crate::document::Document;
 use crate::files;
 use crate::inspect::inspect;
 use crate::project::Project;
-use crate::written::{SwatchFacts, swatch, tiled, told};
+use crate::written::{SwatchFacts, extent, swatch, tiled, told};
 use anyhow::{Context, Result, bail};
-use patterns::knitspeak::{KnitSpeakError, Width};
+use patterns::knitspeak::KnitSpeakError;
 use patterns::tile::Layout;
 use serde_json::json;
 use std::io::IsTerminal as _;
@@ -93,13 +93,9 @@ fn in_file(error: anyhow::Error, path: &Path, text: &str) -> anyhow::Error {
     error.context(path.display().to_string())
 }
 
-fn knitted(path: &Path, extent: &Extent) -> Result<(Project, SwatchFacts)> {
+fn knitted(path: &Path, size: &Extent) -> Result<(Project, SwatchFacts)> {
     let text = read(path)?;
-    let (width, high) = match (extent.cast_on, extent.repeats) {
-        (Some(n), _) => (Width::CastOn(n), 1),
-        (None, Some([wide, high])) => (Width::Repeats(wide), high),
-        (None, None) => (Width::AsWritten, 1),
-    };
+    let (width, high) = extent(size.cast_on, size.repeats);
     swatch(&text, width, high).map_err(|error| in_file(error, path, &text))
 }
 
@@ -111,9 +107,9 @@ fn said(facts: &SwatchFacts) -> String {
 }
 
 /// Knits a swatch, or one of every pattern in a folder.
-pub fn swatches(pattern: &Path, extent: &Extent, output: &Path, print: Output) -> Result<()> {
+pub fn swatches(pattern: &Path, size: &Extent, output: &Path, print: Output) -> Result<()> {
     if !pattern.is_dir() {
-        let (project, facts) = knitted(pattern, extent)?;
+        let (project, facts) = knitted(pattern, size)?;
         project.save(output)?;
         print.print(&serde_json::to_value(&facts)?, &said(&facts));
         return Ok(());
@@ -129,7 +125,7 @@ pub fn swatches(pattern: &Path, extent: &Extent, output: &Path, print: Output) -
     let (mut report, mut lines, mut failed) = (Vec::new(), Vec::new(), 0);
     for path in &paths {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let done = knitted(path, extent).and_then(|(project, facts)| {
+        let done = knitted(path, size).and_then(|(project, facts)| {
             project.save(&output.join(&name).with_extension("purl"))?;
             Ok(facts)
         });

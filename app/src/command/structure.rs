@@ -2,9 +2,8 @@
 
 use super::pins;
 use crate::project::{Fabric, Project};
-use crate::written::{swatch, tiled};
+use crate::written::{extent, swatch, tiled};
 use anyhow::Result;
-use patterns::knitspeak::Width;
 use patterns::tile::Layout;
 use stitch_mesh::edit::{Edited, End, Survivors, Way};
 use stitch_mesh::ids::{FaceId, VertexId};
@@ -69,11 +68,7 @@ pub(super) fn import(
     cast_on: Option<usize>,
     repeats: Option<[usize; 2]>,
 ) -> Result<()> {
-    let (width, high) = match (cast_on, repeats) {
-        (Some(n), _) => (Width::CastOn(n), 1),
-        (None, Some([wide, high])) => (Width::Repeats(wide), high),
-        (None, None) => (Width::AsWritten, 1),
-    };
+    let (width, high) = extent(cast_on, repeats);
     *project = swatch(text, width, high)?.0;
     Ok(())
 }

@@ -97,3 +97,13 @@ fn edge_stitches_fall_away_around_a_tube() {
     let text = "Row 1 (RS): *K3, yo, k2tog, repeat from * to last 4 sts, k2tog, yo, k2. Row 2: Purl.";
     assert!(!over(&round, text, Layout::Straight).unwrap().left_out.is_empty());
 }
+
+#[test]
+fn what_belongs_to_edges_is_not_tiled() {
+    let flat = rectangle(9, 4, StitchSize::of_width(3e-3)).unwrap();
+    for text in ["Row 1 (RS): K2, BO 2, k3. Row 2: P4, CO 2, p2.", "Row 1 (RS): K4, w&t. Row 2: P4."] {
+        let text = format!("# check: cast on 8, rows 2, most stitches 8\n{text}");
+        let error = over(&flat, &text, Layout::Straight).unwrap_err().to_string();
+        assert!(error.contains("but not tiled") || error.contains("cannot be repeated"), "{error}");
+    }
+}

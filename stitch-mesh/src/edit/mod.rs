@@ -181,6 +181,9 @@ pub enum EditError {
     /// A stitch that makes more loops or fewer.
     #[error("stitch {0} does not join one loop to one: only plain stitches can be knitted anew in blocks")]
     NotPlain(FaceId),
+    /// Loops bound off or cast on inside a block.
+    #[error("row {0} of the pattern binds off or casts on, which only the edge of a fabric can")]
+    Edge(usize),
     /// A row that does not fit the one below, or the highest one what lies above.
     #[error("row {row} of the pattern works {worked} loops and makes {made}, where there are {loops}")]
     Row {

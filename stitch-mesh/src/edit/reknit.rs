@@ -122,6 +122,9 @@ impl StitchMesh {
         let mut loops = wide;
         let mut chains = vec![self.chain(block, 0)];
         for (r, row) in block.rows.iter().enumerate() {
+            if row.iter().any(|item| matches!(item, Item::BindOff(_) | Item::CastOn(_))) {
+                return Err(EditError::Edge(r));
+            }
             let worked: usize = row.iter().map(Item::uses).sum();
             let made = row.iter().map(Item::makes).sum();
             let last = r + 1 == block.rows.len();
@@ -263,6 +266,8 @@ mod tests {
         assert!(matches!(wrong, Err(EditError::Row { row: 0, worked: 2, loops: 3, .. })));
         let cross = Item::Cross(Cable::cross(Vec::new(), 1, 1, false), vec![Stitch::knit(); 2]);
         assert!(fabric.reknit(&[block(6, [0, 0], vec![vec![cross]], 2)]).is_err(), "nothing below");
+        let bound = vec![vec![Item::BindOff(3)], vec![Item::CastOn(3)]];
+        assert_eq!(fabric.reknit(&[block(6, [0, 0], bound, 3)]).unwrap_err(), EditError::Edge(0));
         assert_eq!(fabric.reknit(&[]).unwrap().0, fabric);
     }
 }

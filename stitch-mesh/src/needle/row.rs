@@ -23,8 +23,8 @@ pub(super) struct Row<'n> {
     runs: Vec<Run>,
     /// Right corners, below and above, of the last stitch; none where nothing joins it to the next.
     joint: Option<[u32; 2]>,
-    /// The first stitch, and its left corners.
-    first: Option<(usize, [u32; 2])>,
+    /// Left corners, below and above, of the first stitch.
+    first: Option<[u32; 2]>,
     around: usize,
 }
 
@@ -64,8 +64,7 @@ impl<'n> Row<'n> {
             run.above.push(vertex);
         }
         let above = run.above[first..].to_vec();
-        let face = self.needle.faces.len();
-        self.first.get_or_insert((face, [below[0], above[0]]));
+        self.first.get_or_insert([below[0], above[0]]);
         let open = loops[loops.len() - 1].open;
         self.joint = (!open).then_some([end_of(&below), end_of(&above)]);
         self.above.extend(above.windows(2).map(|w| Loop {
@@ -157,7 +156,7 @@ impl<'n> Row<'n> {
             }
         }
         let ends = self.joint.zip(self.first);
-        if let (true, Some(([below, above], (_, [first_below, first_above])))) = (whole_round, ends)
+        if let (true, Some(([below, above], [first_below, first_above]))) = (whole_round, ends)
             && below == first_below
         {
             // The last vertex was put where the first one is.
