@@ -10,6 +10,7 @@
 //! Elements are evaluated in parallel, a batch at a time, and added up in their order, so the sums have the same bits
 //! whatever the number of threads.
 
+use crate::friction::FrictionSpring;
 use crate::gravity::Gravity;
 use crate::local::{Element, point};
 use crate::mass::mass;
@@ -117,6 +118,33 @@ impl System {
         sum.add(&model.segments, &self.segments, |term| segment(term, start));
         sum.add(&model.bends, &self.bends, |term| bend(term, start));
         sum.add(&model.wraps, &self.wraps, |term| wrap(term, start));
+    }
+}
+
+/// Friction.
+impl System {
+    /// Adds a spring on one sliding coordinate that is at `u`.
+    pub fn add_spring(&mut self, dof: usize, spring: &FrictionSpring, u: f64, h: f64) {
+        self.matrix.add_diagonal(dof, h * h * spring.stiffness);
+        self.rhs[dof] -= h * spring.stiffness * (u - spring.anchor);
+    }
+
+    /// Adds a spring between two sliding coordinates of the node whose unknowns begin at `start`; `apart` is their difference.
+    pub fn add_spring_between(
+        &mut self,
+        start: u32,
+        dofs: [usize; 2],
+        spring: &FrictionSpring,
+        apart: f64,
+        h: f64,
+    ) {
+        let force = h * spring.stiffness * (apart - spring.anchor);
+        self.rhs[dofs[0]] -= force;
+        self.rhs[dofs[1]] += force;
+        dofs.iter().for_each(|dof| self.matrix.add_diagonal(*dof, h * h * spring.stiffness));
+        let [column, row] = [dofs[0].min(dofs[1]), dofs[0].max(dofs[1])].map(|dof| dof as u32 - start);
+        let place = self.matrix.place(start, 0, row, column);
+        self.matrix.value[place] -= h * h * spring.stiffness;
     }
 }
 

@@ -15,6 +15,7 @@
 //! have a sign, need no history and stay continuous through curls; where all neighbours stay in a plane both give the same.
 
 use glam::{DVec3, Vec3};
+use smallvec::SmallVec;
 use std::collections::HashMap;
 use stitch_mesh::ids::{NodeId, VisitId};
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
@@ -46,24 +47,25 @@ pub fn curves(net: &YarnNet, state: &YarnState, radius: f64) -> YarnCurves {
 
 /// Unit normal of the fabric at each node, towards the front.
 pub(crate) fn normals(net: &YarnNet, state: &YarnState) -> Vec<DVec3> {
-    let mut around: Vec<NodeId> = Vec::new();
-    let of = |(i, node): (usize, &stitch_mesh::yarn_net::Node)| {
-        around.clear();
-        let visits = node.visits.iter().flat_map(|v| [net.prev(*v), net.next(*v)]);
-        around.extend(visits.flatten().map(|v| net.visits[v.index()].node));
-        around.sort_unstable();
-        around.dedup();
-        let mut vote = DVec3::ZERO;
-        for (k, a) in around.iter().enumerate() {
-            for b in &around[k + 1..] {
-                let laid = |n: &NodeId| net.nodes[n.index()].position - node.position;
-                let now = |n: &NodeId| state.position[n.index()] - state.position[i];
-                vote += node.normal.dot(laid(a).cross(laid(b))) * now(a).cross(now(b));
-            }
+    (0..net.nodes.len()).map(|node| normal(net, state, node)).collect()
+}
+
+/// Unit normal of the fabric at one node, towards the front.
+pub(crate) fn normal(net: &YarnNet, state: &YarnState, index: usize) -> DVec3 {
+    let node = &net.nodes[index];
+    let visits = node.visits.iter().flat_map(|v| [net.prev(*v), net.next(*v)]);
+    let mut around: SmallVec<[NodeId; 8]> = visits.flatten().map(|v| net.visits[v.index()].node).collect();
+    around.sort_unstable();
+    around.dedup();
+    let mut vote = DVec3::ZERO;
+    for (k, a) in around.iter().enumerate() {
+        for b in &around[k + 1..] {
+            let laid = |n: &NodeId| net.nodes[n.index()].position - node.position;
+            let now = |n: &NodeId| state.position[n.index()] - state.position[index];
+            vote += node.normal.dot(laid(a).cross(laid(b))) * now(a).cross(now(b));
         }
-        vote.try_normalize().unwrap_or(node.normal)
-    };
-    net.nodes.iter().enumerate().map(of).collect()
+    }
+    vote.try_normalize().unwrap_or(node.normal)
 }
 
 /// Offset of each visit from its node: front to back along the normal, [visit_count] [m].

@@ -1,6 +1,7 @@
 //! The simulator: a net, its state, and time going by.
 
 use crate::facts::{self, Facts};
+use crate::friction::Anchors;
 use crate::material::{Material, MaterialError};
 use crate::model::{Model, NetError};
 use crate::noise::unit_hash;
@@ -141,14 +142,14 @@ impl Simulator {
             *x += DVec3::new(noise(0), noise(1), noise(2));
         }
         let stepper = Stepper::new(model, &material)?;
-        let anchor = state.sliding.clone();
+        let anchors = Anchors::at(&stepper.stacks, &state.sliding);
         let step = scene.time_step;
         Ok(Self {
             stepper,
             take_in,
             material,
             scene,
-            now: Stuck { state, anchor },
+            now: Stuck { state, anchors },
             step,
             time: 0.0,
             steps: 0,
@@ -161,8 +162,9 @@ impl Simulator {
     pub fn step(&mut self) -> Result<StepReport, SimError> {
         let smallest = self.scene.time_step * 0.5f64.powi(MOST_HALVINGS);
         let mut rejected = 0;
-        let Stuck { state, anchor } = &mut self.now;
-        self.take_in.step(&mut self.stepper.model, state, anchor, self.step);
+        let Stuck { state, anchors } = &mut self.now;
+        let Stepper { model, stacks, .. } = &mut self.stepper;
+        self.take_in.step(model, state, (stacks, anchors), self.step);
         loop {
             match self.stepper.step(&self.now, &self.material, &self.scene, self.step) {
                 Ok(next) => {

@@ -12,7 +12,9 @@
 
 use crate::assembly::{Start, System};
 use crate::body::BodyContact;
-use crate::friction::{FrictionSpring, normal_forces};
+use crate::curves::normal;
+use crate::friction::{Anchors, FrictionSpring, PerYarn, Stack};
+use crate::layers::{LayerContact, Layers};
 use crate::local::Element;
 use crate::material::Material;
 use crate::model::{FROZEN, Model};
@@ -21,6 +23,7 @@ use crate::scene::Scene;
 use crate::solver::Solver;
 use crate::solver::cholesky::SolveError;
 use glam::DVec3;
+use smallvec::SmallVec;
 use stitch_mesh::yarn_net::YarnState;
 
 /// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
@@ -51,14 +54,17 @@ pub(crate) struct Stepper {
     pub solver: Solver,
     /// Mass of the yarn around each node [node_count] [kg].
     masses: Vec<f64>,
+    layers: Layers,
+    /// The nodes at which yarns slide on each other.
+    pub stacks: Vec<Stack>,
 }
 
-/// A state and where its yarns stick.
+/// A state of the yarn with all that the next step needs of the last.
 #[derive(Clone)]
 pub(crate) struct Stuck {
     pub state: YarnState,
-    /// ū of each visit, [visit_count] [m].
-    pub anchor: Vec<f64>,
+    /// Where its yarns stick.
+    pub anchors: Anchors,
 }
 
 impl Stepper {
@@ -66,7 +72,9 @@ impl Stepper {
         let system = System::new(&model);
         let solver = Solver::new(&model, &system.matrix)?;
         let masses = model.node_masses(material);
-        Ok(Self { model, system, solver, masses })
+        let layers = Layers::new(&model.net);
+        let stacks = Stack::all(&model.net);
+        Ok(Self { model, system, solver, masses, layers, stacks })
     }
 
     pub fn set_material(&mut self, material: &Material) {
@@ -85,7 +93,8 @@ impl Stepper {
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
         let start = Start { material, state, gravity: scene.gravity, omega: rotation.omega, step: h };
         self.system.assemble(&self.model, start);
-        let anchor = self.add_friction(now, material, h);
+        let anchors = self.add_friction(now, material, h);
+        self.add_layers(state, material, scene, h);
         let touched = self.add_bodies(state, material, scene, h) + self.add_pins(state, scene, h);
         let mut solution = self.rates(state);
         self.solver.solve(&self.model, &self.system.matrix, &self.system.rhs, &mut solution)?;
@@ -96,27 +105,43 @@ impl Stepper {
         }
         let next = advanced(state, velocity, rate, h);
         self.judge(state, &next)?;
-        Ok(Stuck { state: next, anchor })
+        Ok(Stuck { state: next, anchors })
     }
 
-    /// Normal forces from the forces just assembled, and the friction springs that they carry. Gives the moved anchors.
-    fn add_friction(&mut self, now: &Stuck, material: &Material, h: f64) -> Vec<f64> {
-        let mut anchor = now.anchor.clone();
-        let mut pull = Vec::new();
-        for node in self.model.net.nodes.iter().filter(|n| n.visits.len() > 1) {
-            pull.clear();
-            pull.extend(node.visits.iter().map(|v| self.system.pull[v.index()]));
-            for (visit, press) in node.visits.iter().zip(normal_forces(&pull, material.cohesion)) {
+    /// Compression from the forces just assembled, and the friction springs that it carries. Gives the moved anchors.
+    fn add_friction(&mut self, now: &Stuck, material: &Material, h: f64) -> Anchors {
+        let mut anchors = now.anchors.clone();
+        let (slid, rate) = (&now.state.sliding, &now.state.sliding_velocity);
+        for stack in &self.stacks {
+            let pull: PerYarn<DVec3> = stack.visits.iter().map(|v| self.system.pull[v.index()]).collect();
+            let back = if stack.visits.len() > 2 {
+                -normal(&self.model.net, &now.state, stack.node)
+            } else {
+                DVec3::ZERO
+            };
+            let mut press: PerYarn<f64> = SmallVec::from_elem(0.0, stack.visits.len());
+            for (i, lambda) in stack.compression(&pull, back).iter().enumerate() {
+                let lambda = lambda + material.cohesion;
+                if !stack.parallel[i] {
+                    press[i] += lambda;
+                    press[i + 1] += lambda;
+                    continue;
+                }
+                let [a, b] = [stack.visits[i].index(), stack.visits[i + 1].index()];
+                let (apart, slip) = (slid[a] - slid[b], rate[a] - rate[b]);
+                let spring = FrictionSpring::new(anchors.between[a], apart, slip, lambda, h, material);
+                anchors.between[a] = spring.anchor;
+                let dofs = [a, b].map(|v| self.model.sliding[v] as usize);
+                self.system.add_spring_between(self.model.start[stack.node], dofs, &spring, apart, h);
+            }
+            for (visit, press) in stack.visits.iter().zip(press).filter(|(_, press)| *press > 0.0) {
                 let v = visit.index();
-                let (u, rate) = (now.state.sliding[v], now.state.sliding_velocity[v]);
-                let spring = FrictionSpring::new(anchor[v], u, rate, press, h, material);
-                anchor[v] = spring.anchor;
-                let dof = self.model.sliding[v] as usize;
-                self.system.matrix.add_diagonal(dof, h * h * spring.stiffness);
-                self.system.rhs[dof] -= h * spring.stiffness * (u - spring.anchor);
+                let spring = FrictionSpring::new(anchors.own[v], slid[v], rate[v], press, h, material);
+                anchors.own[v] = spring.anchor;
+                self.system.add_spring(self.model.sliding[v] as usize, &spring, slid[v], h);
             }
         }
-        anchor
+        anchors
     }
 
     /// Gives the number of contacts.
@@ -139,6 +164,29 @@ impl Stepper {
             }
         }
         count
+    }
+
+    /// Layers of the fabric that lie on each other.
+    fn add_layers(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) {
+        let contact = LayerContact {
+            radius: material.drawn_radius,
+            friction: material.friction,
+            stiffness_by_mass: BODY_STIFFNESS / scene.time_step.powi(2),
+            step: h,
+        };
+        for brake in self.layers.brakes(state, &self.masses, contact) {
+            let n = brake.normal.to_array();
+            let entry = |i: usize, j: usize| {
+                let across = f64::from(u8::from(i == j)) - n[i] * n[j];
+                h * h * brake.stiffness * n[i] * n[j] + h * brake.drag * across
+            };
+            let start = self.model.start[brake.node] as usize;
+            for i in 0..3 {
+                let kept: f64 = (0..3).map(|j| entry(i, j) * brake.velocity[j]).sum();
+                self.system.rhs[start + i] += h * brake.force[i] + kept;
+            }
+            self.add_block(brake.node, entry);
+        }
     }
 
     /// Gives the number of pins.

@@ -6,6 +6,7 @@
 //!
 //! How far that has come is part of the state ([`YarnState::taken_in`], 0 to 1), so a fabric that is opened again goes on.
 
+use crate::friction::{Anchors, Stack};
 use crate::model::Model;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
@@ -65,15 +66,21 @@ impl TakeIn {
     }
 
     /// Takes in as much as a step of `h` [s] does, and moves the anchors of friction along.
-    pub fn step(&self, model: &mut Model, state: &mut YarnState, anchor: &mut [f64], h: f64) {
+    pub fn step(
+        &self,
+        model: &mut Model,
+        state: &mut YarnState,
+        (stacks, anchors): (&[Stack], &mut Anchors),
+        h: f64,
+    ) {
         let part = (h / TIME).min(1.0 - state.taken_in);
         if self.total.is_empty() || part <= 0.0 {
             return;
         }
-        for ((u, anchor), total) in state.sliding.iter_mut().zip(anchor).zip(&self.total) {
+        for (u, total) in state.sliding.iter_mut().zip(&self.total) {
             *u -= part * total;
-            *anchor -= part * total;
         }
+        anchors.shift(stacks, |v| -part * self.total[v]);
         state.taken_in += part;
         self.shorten_turns(model, part);
     }

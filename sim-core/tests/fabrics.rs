@@ -2,8 +2,10 @@
 
 mod common;
 
-use common::{edge_heights, free, mean_position, run, size, stockinette, swatch};
-use sim_core::{Model, least_distance};
+use common::{
+    WIDTH, edge_heights, free, least_layer_distance, mean_position, run, size, stockinette, swatch,
+};
+use sim_core::{Body, Material, Model, Scene, Simulator, least_distance};
 
 /// Curl is bistable: either pair of edges rolls in the end and pulls the other pair with it. At first both go their way.
 #[test]
@@ -39,7 +41,7 @@ fn rib_draws_in_to_less_than_half_its_width() {
     let net = swatch(wide, high, |s, _| s / 2 % 2 == 1);
     let mut simulator = free(&net);
     // Cast-on and bind-off do not draw in; the width is that of the rows between.
-    let width = |simulator: &sim_core::Simulator| {
+    let width = |simulator: &Simulator| {
         let side = |column| {
             mean_position(&net, simulator.state(), |f| f % wide == column && (7..13).contains(&(f / wide)))
         };
@@ -105,4 +107,36 @@ fn yarns_of_a_flat_fabric_pass_each_other() {
     let least = least_distance(&curves) / 0.6e-3;
     println!("least distance {least:.2} diameters");
     assert!(least > 0.2);
+}
+
+#[test]
+fn a_rolled_up_edge_does_not_pass_through_itself() {
+    // Without contact between layers the roll is down to a tenth of its thickness by then.
+    let net = stockinette(8, 24);
+    let mut simulator = free(&net);
+    run(&mut simulator, 1.0);
+    let least = least_layer_distance(&net, simulator.state(), simulator.material().drawn_radius);
+    println!("layers {least:.2} of their thickness apart, size {:.1}", 1e3 * size(simulator.state()));
+    assert!((0.85..1.0).contains(&least), "rolled up until it touches, and no further");
+}
+
+#[test]
+fn a_strip_that_falls_lies_in_folds() {
+    let net = swatch(6, 48, |_, t| t % 2 == 1);
+    let ground = Body::Ground { height: -0.065, friction: 0.4 };
+    let scene = Scene { bodies: vec![ground], ..Scene::default() };
+    let mut state = net.laid_state();
+    // Not quite upright.
+    state.position.iter_mut().for_each(|x| x.z += 0.5 * x.y * x.y);
+    let material = Material::for_loop_width(WIDTH);
+    let radius = material.drawn_radius;
+    let mut simulator = Simulator::new(&net, material, scene, state).unwrap();
+    run(&mut simulator, 0.8);
+    let least = least_layer_distance(&net, simulator.state(), radius);
+    let height = size(simulator.state()).y;
+    println!("{least:.2} of the thickness, {:.1} mm high, {:?}", 1e3 * height, simulator.facts());
+    assert!((0.6..1.0).contains(&least));
+    // Layers on each other: higher than one, and much less than the 108 mm it was.
+    assert!((3.0 * radius..0.03).contains(&height));
+    assert!(simulator.facts().rejected_steps < 5);
 }

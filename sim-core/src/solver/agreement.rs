@@ -2,6 +2,7 @@
 
 use super::gradients::{self, NotConverged};
 use super::{Incomplete, Solver};
+use crate::friction::Anchors;
 use crate::material::Material;
 use crate::model::Model;
 use crate::scene::{Pin, Scene};
@@ -39,9 +40,9 @@ impl Hanging {
         let pin = Pin { node: 0, target: net.nodes[0].position, stiffness: 10.0 };
         let scene = Scene { pins: vec![pin], time_step: STEP, ..Scene::default() };
         let model = Model::new(net).unwrap();
-        let anchor = state.sliding.clone();
         let stepper = Stepper::new(model, &material).unwrap();
-        let mut hanging = Self { stepper, material, scene, now: Stuck { state, anchor } };
+        let anchors = Anchors::at(&stepper.stacks, &state.sliding);
+        let mut hanging = Self { stepper, material, scene, now: Stuck { state, anchors } };
         hanging.stepper.solver = hanging.direct();
         // From the laid shape only small steps go well at first.
         let mut h = 0.5 * STEP;

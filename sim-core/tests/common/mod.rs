@@ -79,3 +79,16 @@ pub fn edge_heights(net: &YarnNet, state: &YarnState, wide: usize, high: usize) 
         height(&|s, t| s > last_column && inner(t)),
     ]
 }
+
+/// Least distance of two nodes that were laid more than two stitches apart, over the thickness of the yarns stacked at both:
+/// less than 1 where layers of the fabric are pressed into each other.
+pub fn least_layer_distance(net: &YarnNet, state: &YarnState, drawn_radius: f64) -> f64 {
+    let mut least = f64::INFINITY;
+    for (a, b) in (0..net.nodes.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        if net.nodes[a].position.distance(net.nodes[b].position) > 2.0 * WIDTH {
+            let yarns = (net.nodes[a].visits.len() + net.nodes[b].visits.len()) as f64;
+            least = least.min(state.position[a].distance(state.position[b]) / (yarns * drawn_radius));
+        }
+    }
+    least
+}
