@@ -15,12 +15,15 @@
 //! - Slipping friction is not an explicit force of size μλ (with it u runs away within ten steps) but the secant spring
 //!   k = min(k_f, μλ/|u − ū + h u̇|), in the force and in the matrix.
 //! - Yarns that lie parallel in a stack have an anchor each, as all others.
+//! - μ and λ₀ are those of the two yarns that touch (`materials.rs`), so a yarn inside of a stack is held by each of its faces
+//!   as that one can.
 
-use crate::material::Material;
+use crate::materials::Touch;
 use glam::DVec3;
 
-/// Normal force on each yarn of a stack, cohesion included, from the forces of the yarns at their node, front to back [N].
-pub(crate) fn normal_forces(pull: &[DVec3], cohesion: f64) -> Vec<f64> {
+/// Σμλ, the most that friction can hold of each yarn of a stack, from the forces of the yarns at their node, front to back;
+/// `touch` tells about the contact of a yarn with the next one [N].
+pub(crate) fn friction_limits(pull: &[DVec3], touch: impl Fn(usize) -> Touch) -> Vec<f64> {
     let contacts = pull.len().saturating_sub(1);
     // Thomas' algorithm for the tridiagonal system: (pivot, right-hand side) going down, solution going up.
     let mut rows: Vec<(f64, DVec3)> = Vec::with_capacity(contacts);
@@ -29,15 +32,16 @@ pub(crate) fn normal_forces(pull: &[DVec3], cohesion: f64) -> Vec<f64> {
         let (pivot, above) = rows.last().copied().unwrap_or((f64::INFINITY, DVec3::ZERO));
         rows.push((2.0 - 1.0 / pivot, rhs + above / pivot));
     }
-    let mut forces = vec![0.0; pull.len()];
+    let mut limits = vec![0.0; pull.len()];
     let mut below = DVec3::ZERO;
     for i in (0..contacts).rev() {
         below = (rows[i].1 + below) / rows[i].0;
-        let size = below.length() + cohesion;
-        forces[i] += size;
-        forces[i + 1] += size;
+        let Touch { friction, cohesion } = touch(i);
+        let limit = friction * (below.length() + cohesion);
+        limits[i] += limit;
+        limits[i + 1] += limit;
     }
-    forces
+    limits
 }
 
 /// The spring that stands for friction during one step.
@@ -50,13 +54,13 @@ pub(crate) struct FrictionSpring {
 }
 
 impl FrictionSpring {
-    /// The spring for a visit at `u` that slides with `rate` under the normal force `press`, in a step `h`.
-    pub fn new(anchor: f64, u: f64, rate: f64, press: f64, h: f64, material: &Material) -> Self {
-        let limit = material.friction * press;
-        let reach = limit / material.friction_stiffness.max(1e-12);
+    /// The spring for a visit at `u` that slides with `rate` where friction holds up to `limit`, and sticks with `stick`
+    /// [N/m], in a step `h`.
+    pub fn new(anchor: f64, u: f64, rate: f64, limit: f64, h: f64, stick: f64) -> Self {
+        let reach = limit / stick.max(1e-12);
         let anchor = anchor.clamp(u - reach, u + reach);
         let stretch = (u - anchor + h * rate).abs();
-        Self { anchor, stiffness: material.friction_stiffness.min(limit / stretch.max(1e-12)) }
+        Self { anchor, stiffness: stick.min(limit / stretch.max(1e-12)) }
     }
 }
 
@@ -66,9 +70,17 @@ mod tests {
 
     #[test]
     fn two_yarns_press_each_other_with_half_the_difference() {
-        let forces = normal_forces(&[DVec3::new(0.0, 0.0, -2.0), DVec3::new(0.0, 0.0, 4.0)], 0.5);
-        assert_eq!(forces.as_slice(), [3.5, 3.5]);
-        assert_eq!(normal_forces(&[DVec3::ONE], 0.5).as_slice(), [0.0]);
+        let touch = |_| Touch { friction: 1.0, cohesion: 0.5 };
+        let limits = friction_limits(&[DVec3::new(0.0, 0.0, -2.0), DVec3::new(0.0, 0.0, 4.0)], touch);
+        assert_eq!(limits.as_slice(), [3.5, 3.5]);
+        assert_eq!(friction_limits(&[DVec3::ONE], touch).as_slice(), [0.0]);
+    }
+
+    #[test]
+    fn each_face_of_a_yarn_holds_as_it_can() {
+        let touch = |i: usize| Touch { friction: [0.1, 0.5][i], cohesion: 2.0 };
+        let limits = friction_limits(&[DVec3::ZERO; 3], touch);
+        assert_eq!(limits.as_slice(), [0.2, 1.2, 1.0]);
     }
 
     #[test]
@@ -88,20 +100,20 @@ mod tests {
         let lambda = (a.transpose() * &a).try_inverse().unwrap() * (-a.transpose() * b);
         let size: Vec<f64> = (0..3).map(|i| lambda.row(i).norm()).collect();
         let expected = [size[0], size[0] + size[1], size[1] + size[2], size[2]];
-        for (force, expected) in normal_forces(&pull, 0.0).iter().zip(expected) {
+        let touch = |_| Touch { friction: 1.0, cohesion: 0.0 };
+        for (force, expected) in friction_limits(&pull, touch).iter().zip(expected) {
             assert!((force - expected).abs() < 1e-12);
         }
     }
 
     #[test]
     fn friction_sticks_and_slips() {
-        let m = Material { friction: 0.5, friction_stiffness: 100.0, ..Material::for_loop_width(3e-3) };
-        let stick = FrictionSpring::new(0.0, 1e-3, 0.0, 1.0, 1e-3, &m);
+        let stick = FrictionSpring::new(0.0, 1e-3, 0.0, 0.5, 1e-3, 100.0);
         assert_eq!(stick, FrictionSpring { anchor: 0.0, stiffness: 100.0 });
-        let slip = FrictionSpring::new(0.0, 0.1, 1.0, 1.0, 1e-2, &m);
+        let slip = FrictionSpring::new(0.0, 0.1, 1.0, 0.5, 1e-2, 100.0);
         assert!((slip.anchor - 0.095).abs() < 1e-15);
         assert!((slip.stiffness * (0.1 - slip.anchor + 1e-2) - 0.5).abs() < 1e-12, "pulls with μλ");
-        let free = FrictionSpring::new(0.0, 0.1, 1.0, 0.0, 1e-2, &m);
+        let free = FrictionSpring::new(0.0, 0.1, 1.0, 0.0, 1e-2, 100.0);
         assert_eq!((free.anchor, free.stiffness), (0.1, 0.0));
     }
 }

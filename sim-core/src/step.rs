@@ -12,16 +12,18 @@
 
 use crate::assembly::{Start, System};
 use crate::body::BodyContact;
-use crate::friction::{FrictionSpring, normal_forces};
+use crate::friction::{FrictionSpring, friction_limits};
 use crate::local::Element;
 use crate::material::Material;
-use crate::model::{FROZEN, Model};
+use crate::materials::{Materials, Touch};
+use crate::model::{FROZEN, Model, SegmentTerm};
 use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
 use crate::solver::Solver;
 use crate::solver::cholesky::SolveError;
 use glam::DVec3;
-use stitch_mesh::yarn_net::YarnState;
+use stitch_mesh::ids::VisitId;
+use stitch_mesh::yarn_net::{Node, YarnState};
 
 /// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
 /// weight, at 1e4 a corner that touches down alone upsets the conditioning.
@@ -49,8 +51,12 @@ pub(crate) struct Stepper {
     pub model: Model,
     pub system: System,
     pub solver: Solver,
+    /// Of each colour of the model.
+    materials: Vec<Material>,
     /// Mass of the yarn around each node [node_count] [kg].
     masses: Vec<f64>,
+    /// Distance that each node keeps from bodies [node_count] [m].
+    clearances: Vec<f64>,
 }
 
 /// A state and where its yarns stick.
@@ -62,36 +68,35 @@ pub(crate) struct Stuck {
 }
 
 impl Stepper {
-    pub fn new(model: Model, material: &Material) -> Result<Self, SolveError> {
+    pub fn new(model: Model, materials: &Materials) -> Result<Self, SolveError> {
         let system = System::new(&model);
         let solver = Solver::new(&model, &system.matrix)?;
-        let masses = model.node_masses(material);
-        Ok(Self { model, system, solver, masses })
+        let mut stepper =
+            Self { model, system, solver, materials: Vec::new(), masses: Vec::new(), clearances: Vec::new() };
+        stepper.set_materials(materials);
+        Ok(stepper)
     }
 
-    pub fn set_material(&mut self, material: &Material) {
-        self.masses = self.model.node_masses(material);
+    pub fn set_materials(&mut self, materials: &Materials) {
+        self.materials = self.model.resolve(materials);
+        self.masses = self.model.node_masses(materials);
+        self.clearances = clearances(&self.model, materials);
     }
 
     /// The state after a step of `h` [s] from `now`.
-    pub fn step(
-        &mut self,
-        now: &Stuck,
-        material: &Material,
-        scene: &Scene,
-        h: f64,
-    ) -> Result<Stuck, Rejection> {
+    pub fn step(&mut self, now: &Stuck, scene: &Scene, h: f64) -> Result<Stuck, Rejection> {
         let state = &now.state;
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
-        let start = Start { material, state, gravity: scene.gravity, omega: rotation.omega, step: h };
+        let Scene { gravity, air, .. } = *scene;
+        let start = Start { materials: &self.materials, state, gravity, air, omega: rotation.omega, step: h };
         self.system.assemble(&self.model, start);
-        let anchor = self.add_friction(now, material, h);
-        let touched = self.add_bodies(state, material, scene, h) + self.add_pins(state, scene, h);
+        let anchor = self.add_friction(now, h);
+        let touched = self.add_bodies(state, scene, h) + self.add_pins(state, scene, h);
         let mut solution = self.rates(state);
         self.solver.solve(&self.model, &self.system.matrix, &self.system.rhs, &mut solution)?;
         let (mut velocity, rate) = self.split(&solution);
-        if touched == 0 {
-            let kept = Rotation { omega: rotation.omega / (1.0 + h * material.mass_damping), ..rotation };
+        if touched == 0 && air == 0.0 {
+            let kept = Rotation { omega: rotation.omega / (1.0 + h * self.mean_mass_damping()), ..rotation };
             self.keep_rotation(state, &mut velocity, kept);
         }
         let next = advanced(state, velocity, rate, h);
@@ -100,16 +105,18 @@ impl Stepper {
     }
 
     /// Normal forces from the forces just assembled, and the friction springs that they carry. Gives the moved anchors.
-    fn add_friction(&mut self, now: &Stuck, material: &Material, h: f64) -> Vec<f64> {
+    fn add_friction(&mut self, now: &Stuck, h: f64) -> Vec<f64> {
         let mut anchor = now.anchor.clone();
         let mut pull = Vec::new();
         for node in self.model.net.nodes.iter().filter(|n| n.visits.len() > 1) {
             pull.clear();
             pull.extend(node.visits.iter().map(|v| self.system.pull[v.index()]));
-            for (visit, press) in node.visits.iter().zip(normal_forces(&pull, material.cohesion)) {
-                let v = visit.index();
+            let material = |v: &VisitId| &self.materials[self.model.dye_of[v.index()] as usize];
+            let touch = |i: usize| Touch::between(material(&node.visits[i]), material(&node.visits[i + 1]));
+            for (visit, limit) in node.visits.iter().zip(friction_limits(&pull, touch)) {
+                let (v, stick) = (visit.index(), material(visit).friction_stiffness);
                 let (u, rate) = (now.state.sliding[v], now.state.sliding_velocity[v]);
-                let spring = FrictionSpring::new(anchor[v], u, rate, press, h, material);
+                let spring = FrictionSpring::new(anchor[v], u, rate, limit, h, stick);
                 anchor[v] = spring.anchor;
                 let dof = self.model.sliding[v] as usize;
                 self.system.matrix.add_diagonal(dof, h * h * spring.stiffness);
@@ -120,13 +127,13 @@ impl Stepper {
     }
 
     /// Gives the number of contacts.
-    fn add_bodies(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) -> usize {
+    fn add_bodies(&mut self, state: &YarnState, scene: &Scene, h: f64) -> usize {
         let mut count = 0;
         for &body in &scene.bodies {
             for node in 0..state.position.len() {
                 let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
                 let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
-                let contact = BodyContact { body, clearance: clearance(material), stiffness };
+                let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
                 let (gap, normal) = contact.gap(x);
                 if gap + h * v.dot(normal).min(0.0) >= 0.0 {
                     continue;
@@ -147,6 +154,13 @@ impl Stepper {
             self.add_point(pin.node as usize, pin, state.position[pin.node as usize], h);
         }
         scene.pins.len()
+    }
+
+    /// α of the whole fabric: that of its yarns by their mass [1/s].
+    fn mean_mass_damping(&self) -> f64 {
+        let mass = |s: &SegmentTerm| self.materials[s.dye as usize].density * s.rest;
+        let sum = |of: &dyn Fn(&SegmentTerm) -> f64| self.model.segments.iter().map(of).sum::<f64>();
+        sum(&|s| mass(s) * self.materials[s.dye as usize].mass_damping) / sum(&mass)
     }
 
     /// Adds a force on the position of one node.
@@ -233,7 +247,10 @@ fn advanced(state: &YarnState, velocity: Vec<DVec3>, sliding_velocity: Vec<f64>,
     }
 }
 
-/// Distance that nodes keep from bodies: two yarns lie on each other at a node [m].
-pub(crate) fn clearance(material: &Material) -> f64 {
-    2.0 * material.drawn_radius
+/// Distance that nodes keep from bodies, [node_count]: two yarns lie on each other at a node, each as thick as the yarns
+/// there in the mean [m].
+pub(crate) fn clearances(model: &Model, materials: &Materials) -> Vec<f64> {
+    let radius = |v: &VisitId| materials.of(model.net.visits[v.index()].dye).drawn_radius;
+    let of = |node: &Node| 2.0 * node.visits.iter().map(radius).sum::<f64>() / node.visits.len() as f64;
+    model.net.nodes.iter().map(of).collect()
 }

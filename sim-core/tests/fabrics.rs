@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::{edge_heights, free, mean_position, run, size, stockinette, swatch};
-use sim_core::{Model, least_distance};
+use common::{WIDTH, edge_heights, free, mean_position, run, size, stockinette, swatch};
+use sim_core::{Material, Model, least_distance};
 
 /// Curl is bistable: either pair of edges rolls in the end and pulls the other pair with it. At first both go their way.
 #[test]
@@ -101,7 +101,8 @@ fn plain_knit_has_at_most_eleven_blocks_a_row() {
 fn yarns_of_a_flat_fabric_pass_each_other() {
     // Corners left out: there the ends of three rows meet in one place.
     let net = stockinette(8, 8);
-    let curves = sim_core::curves(&net, &net.laid_state(), 0.3e-3);
+    let thin = Material { drawn_radius: 0.3e-3, ..Material::for_loop_width(WIDTH) };
+    let curves = sim_core::curves(&net, &net.laid_state(), &thin.into());
     let least = least_distance(&curves) / 0.6e-3;
     println!("least distance {least:.2} diameters");
     assert!(least > 0.2);

@@ -23,7 +23,6 @@ const STEP: f64 = 5e-3;
 /// A fabric that hangs by one node, after a few steps.
 struct Hanging {
     stepper: Stepper,
-    material: Material,
     scene: Scene,
     now: Stuck,
 }
@@ -40,13 +39,13 @@ impl Hanging {
         let scene = Scene { pins: vec![pin], time_step: STEP, ..Scene::default() };
         let model = Model::new(net).unwrap();
         let anchor = state.sliding.clone();
-        let stepper = Stepper::new(model, &material).unwrap();
-        let mut hanging = Self { stepper, material, scene, now: Stuck { state, anchor } };
+        let stepper = Stepper::new(model, &material.into()).unwrap();
+        let mut hanging = Self { stepper, scene, now: Stuck { state, anchor } };
         hanging.stepper.solver = hanging.direct();
         // From the laid shape only small steps go well at first.
         let mut h = 0.5 * STEP;
         while h <= STEP {
-            match hanging.stepper.step(&hanging.now, &hanging.material, &hanging.scene, h) {
+            match hanging.stepper.step(&hanging.now, &hanging.scene, h) {
                 Ok(next) => (hanging.now, h) = (next, 1.1 * h),
                 Err(_) => h *= 0.5,
             }
@@ -55,7 +54,7 @@ impl Hanging {
     }
 
     fn step(&mut self) -> Stuck {
-        self.stepper.step(&self.now, &self.material, &self.scene, STEP).unwrap()
+        self.stepper.step(&self.now, &self.scene, STEP).unwrap()
     }
 
     fn direct(&self) -> Solver {
