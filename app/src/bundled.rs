@@ -31,6 +31,6 @@ fn stitched(project: &Project) -> Result<Project> {
 /// The bundled mesh is broken.
 pub fn pullover() -> Result<Project> {
     let mut project = stitched(&Command::Autolabel.apply(&mesh()?)?)?;
-    project.scene = scenes::scene("form", project.fabric()?, &project.material)?;
+    project.scene = scenes::scene("form", project.fabric()?, &project.materials.base)?;
     Ok(project)
 }

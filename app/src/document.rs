@@ -171,7 +171,8 @@ fn merge(first: &Command, second: &Command) -> Option<Command> {
         (LabelEdges { edges, label: a }, LabelEdges { edges: more, label }) if a == label => {
             Some(LabelEdges { edges: union(edges, more), label: *label })
         }
-        (SetMaterial { .. }, SetMaterial { .. }) | (SetScene { .. }, SetScene { .. }) => Some(second.clone()),
+        (SetMaterial { color: a, .. }, SetMaterial { color, .. }) if a == color => Some(second.clone()),
+        (SetScene { .. }, SetScene { .. }) => Some(second.clone()),
         _ => None,
     }
 }

@@ -54,7 +54,7 @@ pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Resul
         Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown),
         Stage::Yarn => {
             let fabric = project.fabric()?;
-            let yarn = curves(&fabric.net, &fabric.state(), project.material.drawn_radius);
+            let yarn = curves(&fabric.net, &fabric.state(), &project.materials);
             Drawing { yarn, solids: solids(&project.scene), ..Drawing::default() }
         }
     })

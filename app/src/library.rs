@@ -103,13 +103,13 @@ fn picture(gpu: &Gpu, text: &str) -> Result<RgbaImage> {
     const SHOWN: f32 = 0.27;
     let project = high(text)?;
     let Fabric { stitches, net, .. } = project.fabric()?;
-    let material = project.material.clone();
-    let scene = pinned_out(stitches, (net, &net.laid_state()), &material, |_| true);
-    let mut simulator = Simulator::new(net, material.clone(), scene, net.laid_state())?;
+    let materials = project.materials.clone();
+    let scene = pinned_out(stitches, (net, &net.laid_state()), &materials.base, |_| true);
+    let mut simulator = Simulator::new(net, materials.clone(), scene, net.laid_state())?;
     while simulator.time_s() < TIME {
         simulator.step()?;
     }
-    let yarn = curves(net, simulator.state(), material.drawn_radius);
+    let yarn = curves(net, simulator.state(), &materials);
     let drawing = Drawing { yarn, ..Drawing::default() };
     let [low, high] = stitches.mesh().bounds().map(|p| p.as_vec3());
     let middle = (low + high) / 2.0;

@@ -10,7 +10,8 @@ use crate::files;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use sim_core::{Facts, Material, Scene, carry_over};
+use sim_core::{Facts, Material, Materials, Scene, carry_over};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use stitch_mesh::dye::Dye;
@@ -38,8 +39,8 @@ pub struct Project {
     pub labelled: Arc<LabelledMesh>,
     /// Size of a stitch as laid.
     pub size: StitchSize,
-    /// The yarn.
-    pub material: Material,
+    /// The yarns.
+    pub materials: Materials,
     /// What surrounds the fabric in the simulation.
     pub scene: Scene,
     /// Stitches and rows on every edge of the input, once somebody has asked for some.
@@ -86,7 +87,7 @@ impl Project {
         Self {
             labelled: Arc::new(LabelledMesh::new(mesh)),
             size,
-            material: Material::for_loop_width(size.width),
+            materials: Material::for_loop_width(size.width).into(),
             scene: Scene::empty(),
             counts: None,
             fabric: None,
@@ -162,6 +163,9 @@ struct File {
     rising: Vec<Option<HalfEdgeId>>,
     stitch_size: StitchSize,
     material: Material,
+    /// Yarns that have another, by their colour. Absent where there are none.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    yarns: BTreeMap<Dye, Material>,
     scene: Scene,
     /// Absent in files from before counts could be edited, and before there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -242,7 +246,8 @@ impl File {
             labels: labelled.labels().to_vec(),
             rising: labelled.mesh().faces().map(|f| labelled.wales(f).map(|w| w.right)).collect(),
             stitch_size: project.size,
-            material: project.material.clone(),
+            material: project.materials.base.clone(),
+            yarns: project.materials.by_dye.clone(),
             scene: project.scene.clone(),
             counts: project.counts.clone(),
             fabric: project.fabric.as_ref().map(FileFabric::of),
@@ -253,11 +258,12 @@ impl File {
         let mesh = PolygonMesh::new(self.mesh.positions, &self.mesh.faces)?;
         let labelled = LabelledMesh::from_parts(mesh, self.labels, &self.rising)
             .context("the labels do not belong to the mesh")?;
-        self.material.validate().context("the material")?;
+        let materials = Materials { base: self.material, by_dye: self.yarns };
+        materials.validate()?;
         let mut project = Project {
             labelled: Arc::new(labelled),
             size: self.stitch_size,
-            material: self.material,
+            materials,
             scene: self.scene,
             counts: self.counts,
             fabric: None,
@@ -301,7 +307,7 @@ mod tests {
         before.save(&path).unwrap();
         let after = Project::open(&path).unwrap();
         assert_eq!(after.labelled, before.labelled);
-        assert_eq!(after.material, before.material);
+        assert_eq!(after.materials, before.materials);
         let (a, b) = (after.fabric.unwrap(), before.fabric.unwrap());
         assert_eq!(a.stitches, b.stitches);
         assert_eq!(a.state, b.state);

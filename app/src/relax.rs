@@ -37,8 +37,8 @@ pub fn relax_mesh(
     let stitches = relaxation.stitches()?;
     let mut after = project.clone();
     // Yarn that nobody has chosen is as thick as its stitches, and these have another size now.
-    if project.material == Material::for_loop_width(mean_width(before)) {
-        after.material = Material::for_loop_width(mean_width(&stitches));
+    if project.materials.base == Material::for_loop_width(mean_width(before)) {
+        after.materials = project.materials.refitted(mean_width(&stitches));
     }
     after.scene.pins.clear(); // they hold nodes where these are no more
     after.fabric = Some(Fabric::new(stitches));

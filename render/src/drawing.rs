@@ -117,7 +117,8 @@ impl Drawing {
         let lines = Bounds::of(self.lines.segments.iter().flat_map(|segment| segment.ends));
         let yarn = self.yarn.curves.iter().filter_map(|curve| {
             let bounds = Bounds::of(curve.points.iter().copied())?;
-            Some(Bounds { min: bounds.min - curve.radius, max: bounds.max + curve.radius })
+            let radius = curve.greatest_radius();
+            Some(Bounds { min: bounds.min - radius, max: bounds.max + radius })
         });
         [faces, lines, self.solids.bounds()].into_iter().flatten().chain(yarn).reduce(Bounds::union)
     }

@@ -12,7 +12,7 @@ mod transport;
 
 use glam::Vec3;
 use stitch_mesh::dye::Dye;
-use stitch_mesh::yarn_curves::YarnCurves;
+use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 use wgpu::CompareFunction::{Greater, Less};
 
 use self::level::{Batch, Chunk, Level, RUN, SAMPLES, SIDES, SPAN_VERTICES, batches};
@@ -28,10 +28,10 @@ const PITCH: f32 = 4.5;
 /// Spans that are culled together: few enough to leave out most of what is not seen, enough to keep draw calls cheap.
 const CHUNK: usize = 32;
 
-/// A curve as `yarn.wgsl` reads it.
+/// A stretch of a curve that has one thickness, as `yarn.wgsl` reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-struct Curve {
+struct Stretch {
     radius: f32,
     /// Turn of the frame a span, beside its transport [rad].
     roll: f32,
@@ -43,7 +43,7 @@ pub(crate) struct YarnMesh {
     points: GrowingBuffer,
     /// Colour from each control point to the next, as sRGB in the bytes of a number.
     dyes: GrowingBuffer,
-    curves: GrowingBuffer,
+    stretches: GrowingBuffer,
     chunks: Vec<Chunk>,
     bounds: Option<Bounds>,
     radius: f32,
@@ -54,7 +54,7 @@ impl YarnMesh {
         Self {
             points: GrowingBuffer::new("yarn control points", wgpu::BufferUsages::STORAGE),
             dyes: GrowingBuffer::new("yarn colours", wgpu::BufferUsages::STORAGE),
-            curves: GrowingBuffer::new("yarns", wgpu::BufferUsages::STORAGE),
+            stretches: GrowingBuffer::new("stretches of yarn", wgpu::BufferUsages::STORAGE),
             chunks: Vec::new(),
             bounds: None,
             radius: 0.0,
@@ -65,25 +65,26 @@ impl YarnMesh {
     pub fn set(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
         let mut points = Vec::with_capacity(yarn.curves.iter().map(|curve| curve.points.len() + 4).sum());
         let mut dyes: Vec<u32> = Vec::with_capacity(points.capacity());
-        let mut curves = Vec::with_capacity(yarn.curves.len());
+        let mut stretches = Vec::with_capacity(yarn.curves.len());
         self.chunks.clear();
         for curve in &yarn.curves {
             let first = points.len() + 1;
-            let roll = lay_out(curve, curves.len() as u32, &mut points);
+            let roll = lay_out(curve, stretches.len() as u32, &mut points);
             // One control point lies before the first of the curve, and some after its last.
             let packed = |dye: &Dye| u32::from_le_bytes([dye.0[0], dye.0[1], dye.0[2], 0]);
             dyes.resize(first.min(points.len()), 0);
             dyes.extend(curve.dyes.iter().cycle().take(points.len() - dyes.len()).map(packed));
             dyes.resize(points.len(), 0);
             if points.len() > first {
-                self.chunks.extend(chunks(&points[first..points.len() - 2], first, curve.radius));
+                self.chunks.extend(chunks(&points[first..points.len() - 2], first, curve.greatest_radius()));
             }
-            curves.push(Curve { radius: curve.radius, roll });
+            let radii = curve.radii.chunk_by(|a, b| a == b);
+            stretches.extend(radii.map(|equal| Stretch { radius: equal[0], roll }));
         }
         self.bounds = Bounds::of(
             self.chunks.iter().flat_map(|chunk| [chunk.center - chunk.reach, chunk.center + chunk.reach]),
         );
-        self.radius = yarn.curves.iter().map(|curve| curve.radius).fold(0.0, f32::max);
+        self.radius = yarn.curves.iter().map(YarnCurve::greatest_radius).fold(0.0, f32::max);
         let limits = gpu.device.limits();
         // The numbers of vertices must fit, too: five million control points.
         let numbered = (i32::MAX as u32 / SPAN_VERTICES) as u64 * size_of::<ControlPoint>() as u64;
@@ -92,7 +93,7 @@ impl YarnMesh {
             .points
             .write(gpu, bytemuck::cast_slice(&points), limit)
             .and_then(|()| self.dyes.write(gpu, bytemuck::cast_slice(&dyes), limit))
-            .and_then(|()| self.curves.write(gpu, bytemuck::cast_slice(&curves), limit));
+            .and_then(|()| self.stretches.write(gpu, bytemuck::cast_slice(&stretches), limit));
         if written.is_err() {
             self.chunks.clear();
         }
@@ -252,12 +253,12 @@ impl YarnPipelines {
         mesh: &YarnMesh,
         batches: &[Batch],
     ) {
-        let buffers = [&mesh.points, &mesh.curves, &mesh.dyes].map(GrowingBuffer::buffer);
-        let [Some(points), Some(curves), Some(dyes)] = buffers else { return };
+        let buffers = [&mesh.points, &mesh.stretches, &mesh.dyes].map(GrowingBuffer::buffer);
+        let [Some(points), Some(stretches), Some(dyes)] = buffers else { return };
         if batches.is_empty() {
             return;
         }
-        let buffers = [points, curves, dyes].map(wgpu::Buffer::as_entire_binding);
+        let buffers = [points, stretches, dyes].map(wgpu::Buffer::as_entire_binding);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &bind_group(&gpu.device, &self.layout, buffers.to_vec()), &[]);
         pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);

@@ -10,16 +10,17 @@ struct ControlPoint {
     position: vec3f,
     arc: f32,
     normal: vec3f,
-    curve: u32,
+    stretch: u32,
 }
 
-struct Curve {
+// Yarn of one thickness.
+struct Stretch {
     radius: f32,
     roll: f32,
 }
 
 @group(1) @binding(0) var<storage, read> points: array<ControlPoint>;
-@group(1) @binding(1) var<storage, read> curves: array<Curve>;
+@group(1) @binding(1) var<storage, read> stretches: array<Stretch>;
 @group(1) @binding(2) var<storage, read> dyes: array<u32>;
 
 // A vertex number counts spans, steps along a span and sides around it, in the finest level's grid. The end of a span is
@@ -58,10 +59,10 @@ fn station(vertex: u32) -> Station {
     let before = points[span - 1u].position;
     let after = points[span + 2u].position;
     let spline = catmull_rom(before, start.position, end.position, after, f32(step) / f32(SAMPLES));
-    let curve = curves[start.curve & ~END];
+    let stretch = stretches[start.stretch & ~END];
     // Cut yarn ends in a point rather than in a hole.
-    let cut = step == 0u && (start.curve & END) != 0u;
-    let radius = select(curve.radius, 0.0, cut);
+    let cut = step == 0u && (start.stretch & END) != 0u;
+    let radius = select(stretch.radius, 0.0, cut);
     return Station(spline.position, direction(spline.tangent, end.position - start.position), radius, linear(dyes[span]));
 }
 
@@ -74,7 +75,7 @@ fn reference_normal(vertex: u32, tangent: vec3f) -> vec3f {
     let a = direction(first.tangent, end - start.position);
     let moved = start.normal - (a + tangent) * (dot(tangent, start.normal) / max(1.0 + dot(a, tangent), 1e-4));
     let straight = normalize(moved - tangent * dot(moved, tangent));
-    let roll = curves[start.curve & ~END].roll * f32(step_of(vertex)) / f32(SAMPLES);
+    let roll = stretches[start.stretch & ~END].roll * f32(step_of(vertex)) / f32(SAMPLES);
     return straight * cos(roll) + cross(tangent, straight) * sin(roll);
 }
 

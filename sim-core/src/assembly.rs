@@ -10,6 +10,7 @@
 //! Elements are evaluated in parallel, a batch at a time, and added up in their order, so the sums have the same bits
 //! whatever the number of threads.
 
+use crate::air;
 use crate::friction::FrictionSpring;
 use crate::gravity::Gravity;
 use crate::local::{Element, point};
@@ -28,10 +29,13 @@ const BATCH: usize = 2048;
 /// Where a step starts from.
 #[derive(Clone, Copy)]
 pub(crate) struct Start<'a> {
-    pub material: &'a Material,
+    /// Of each colour of the model.
+    pub materials: &'a [Material],
     pub state: &'a YarnState,
     /// Acceleration of gravity [m/s²].
     pub gravity: DVec3,
+    /// Density of the air [kg/m³].
+    pub air: f64,
     /// ω of the rigid motion [rad/s].
     pub omega: DVec3,
     /// h [s].
@@ -195,8 +199,9 @@ impl Sum<'_> {
 /// Mass, stretch, gravity, and contact length or parallel contact.
 fn segment(
     term: &SegmentTerm,
-    Start { material, state, gravity, omega, step: h }: Start,
+    Start { materials, state, gravity, air, omega, step: h }: Start,
 ) -> Contribution<2, 8> {
+    let material = &materials[term.dye as usize];
     let q: [f64; 8] = term.stencil.coordinates(state);
     let v: [f64; 8] = term.stencil.velocities(state);
     let mass = mass(material.density, &q);
@@ -206,7 +211,9 @@ fn segment(
     let weight = Gravity { weight: material.density * gravity }.expand(&q);
     let spacing = term.spacing(material).expand(&[q[3], q[7]]);
 
-    let by_mass = 1.0 + h * material.mass_damping;
+    let speed = 0.5 * (point(&v, 0) + point(&v, 4)).length();
+    let drag = air::drag(air, 2.0 * material.drawn_radius, speed);
+    let by_mass = 1.0 + h * (material.mass_damping + drag / material.density);
     let mut out = Contribution { matrix: [[0.0; 8]; 8], rhs: [0.0; 8], pull: [DVec3::ZERO; 2] };
     for i in 0..8 {
         for j in 0..8 {
@@ -226,7 +233,8 @@ fn segment(
     out
 }
 
-fn bend(term: &BendTerm, Start { material, state, omega, step: h, .. }: Start) -> Contribution<3, 12> {
+fn bend(term: &BendTerm, Start { materials, state, omega, step: h, .. }: Start) -> Contribution<3, 12> {
+    let material = &materials[term.dye as usize];
     let q = term.stencil.coordinates(state);
     let bend = term.bend(material);
     let bent = bend.expand(&q);
@@ -239,7 +247,8 @@ fn bend(term: &BendTerm, Start { material, state, omega, step: h, .. }: Start) -
     }
 }
 
-fn wrap(term: &WrapTerm, Start { material, state, step: h, .. }: Start) -> Contribution<4, 12> {
+fn wrap(term: &WrapTerm, Start { materials, state, step: h, .. }: Start) -> Contribution<4, 12> {
+    let material = &materials[term.dye as usize];
     let wrapped = term.wrap(material).expand(&term.stencil.points(state));
     let damped = h * (h + material.stiffness_damping);
     Contribution {
@@ -252,6 +261,8 @@ fn wrap(term: &WrapTerm, Start { material, state, step: h, .. }: Start) -> Contr
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Materials;
+    use crate::solver::gradients::Preconditioner;
     use std::sync::Arc;
     use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube};
 
@@ -272,15 +283,22 @@ mod tests {
         let material = Material::for_loop_width(3e-3);
         let mut system = System::new(&model);
         let step = 1e-3;
-        let start =
-            Start { material: &material, state: &state, gravity: DVec3::ZERO, omega: DVec3::ZERO, step };
+        let materials = Materials::from(material);
+        let start = Start {
+            materials: &model.resolve(&materials),
+            state: &state,
+            gravity: DVec3::ZERO,
+            air: 0.0,
+            omega: DVec3::ZERO,
+            step,
+        };
         system.assemble(&model, start);
         let largest = system.rhs.iter().fold(0.0, |m: f64, f| m.max(f.abs())) / step;
         let slope = |change: &dyn Fn(&mut YarnState, f64)| {
             let at = |h: f64| {
                 let mut moved = state.clone();
                 change(&mut moved, h);
-                model.elastic_energy(&material, &moved)
+                model.elastic_energy(&materials, &moved)
             };
             (at(-2e-8) - 8.0 * at(-1e-8) + 8.0 * at(1e-8) - at(2e-8)) / 12e-8
         };
@@ -304,16 +322,18 @@ mod tests {
         let material = Material::for_loop_width(3e-3);
         let mut system = System::new(&model);
         let start = Start {
-            material: &material,
+            materials: &model.resolve(&material.into()),
             state: &state,
             gravity: DVec3::NEG_Y,
+            air: 1.2,
             omega: DVec3::ZERO,
             step: 5e-3,
         };
         system.assemble(&model, start);
-        let mut solution = system.rhs.clone();
+        let mut solution = vec![0.0; system.rhs.len()];
         let mut cholesky = crate::solver::cholesky::Cholesky::new(&model, &system.matrix).unwrap();
-        cholesky.solve(&system.matrix, &mut solution).unwrap();
+        cholesky.factorise(&system.matrix).unwrap();
+        cholesky.apply(&system.rhs, &mut solution);
         let matrix = &system.matrix;
         let mut product = vec![0.0; solution.len()];
         for j in 0..solution.len() {
@@ -330,6 +350,6 @@ mod tests {
             assert!((a - b).abs() < 1e-9 * largest);
         }
         system.matrix.add_diagonal(0, -1.0);
-        assert!(cholesky.solve(&system.matrix, &mut solution).is_err(), "not positive definite");
+        assert!(cholesky.factorise(&system.matrix).is_err(), "not positive definite");
     }
 }

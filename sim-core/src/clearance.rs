@@ -3,7 +3,7 @@
 use crate::curves::with_arc_length;
 use glam::{IVec3, Vec3};
 use std::collections::HashMap;
-use stitch_mesh::yarn_curves::YarnCurves;
+use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 
 /// Yarn closer than this along itself is no other yarn, in radii: a tight half turn is 2π of them.
 const OWN_LENGTH: f32 = 6.0;
@@ -20,7 +20,7 @@ struct Sample {
 /// Least distance between the centre lines of two yarns, or of one and itself further along; infinite where none come
 /// within two diameters [m].
 pub fn least_distance(curves: &YarnCurves) -> f64 {
-    let radius = curves.curves.iter().map(|c| c.radius).fold(0.0, f32::max);
+    let radius = curves.curves.iter().map(YarnCurve::greatest_radius).fold(0.0, f32::max);
     let cell = 4.0 * radius;
     if cell <= 0.0 {
         return f64::INFINITY;
@@ -59,7 +59,6 @@ pub fn least_distance(curves: &YarnCurves) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stitch_mesh::yarn_curves::YarnCurve;
 
     fn line(from: Vec3, to: Vec3) -> YarnCurve {
         let points = (0..30).map(|i| from.lerp(to, i as f32 / 29.0)).collect();

@@ -1,10 +1,11 @@
 //! From nodes to yarn curves (stage 7 of the flow).
 //!
 //! # Theory
-//! All yarns of a node share its position. To be drawn they are moved apart along the normal of the fabric there, by
-//! (n − 1 − 2·rank) R front to back (Cirio et al. §3.2). That is not enough inside of a stitch contact, where the old loop
-//! goes from front to back and the new one from back to front along the same straight axis, and so right through it: each
-//! gets one more control point in the middle, R to the side on which its handedness lets it pass.
+//! All yarns of a node share its position. To be drawn they are moved apart along the normal of the fabric there until they
+//! lie on each other, the middle of the stack at the node: by (n − 1 − 2·rank) R front to back where all have the radius R
+//! (Cirio et al. §3.2). That is not enough inside of a stitch contact, where the old loop goes from front to back and the new
+//! one from back to front along the same straight axis, and so right through it: each gets one more control point in the
+//! middle, to the side on which its handedness lets it pass by the radius of the other.
 //!
 //! The normal of a node is Σ a_ij (eᵢ × eⱼ) over the pairs of its neighbours, eᵢ the vectors to them now and
 //! a_ij = n_laid·(Eᵢ × Eⱼ) the area that the same pair spanned in the fabric as laid. Each pair so votes for the front by the
@@ -14,6 +15,7 @@
 //! The paper fits a plane by SVD, which leaves the sign open, and needs the history of each normal to settle it. The votes
 //! have a sign, need no history and stay continuous through curls; where all neighbours stay in a plane both give the same.
 
+use crate::materials::Materials;
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
 use std::collections::HashMap;
@@ -21,26 +23,30 @@ use stitch_mesh::ids::{NodeId, VisitId};
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 use stitch_mesh::yarn_net::{StitchContact, YarnNet, YarnState};
 
-/// The yarns of `net` in `state`, drawn with `radius` [m].
-pub fn curves(net: &YarnNet, state: &YarnState, radius: f64) -> YarnCurves {
+/// The yarns of `net` in `state`, drawn with the radii of their materials.
+pub fn curves(net: &YarnNet, state: &YarnState, materials: &Materials) -> YarnCurves {
     let normals = normals(net, state);
-    let offsets = offsets(net, &normals, radius);
+    let radii = radii(net, materials);
+    let offsets = offsets(net, &normals, &radii);
     let at = |visit: VisitId| state.position[net.visits[visit.index()].node.index()] + offsets[visit.index()];
     let middles: HashMap<(VisitId, VisitId), DVec3> =
-        net.contacts.iter().flat_map(|c| middles(net, state, &normals, c, radius)).collect();
+        net.contacts.iter().flat_map(|c| middles(net, state, &normals, c, &radii)).collect();
 
     let curve = |yarn: &stitch_mesh::yarn_net::Yarn| {
         let mut points = Vec::with_capacity(2 * yarn.visits.len());
         let mut dyes = Vec::with_capacity(2 * yarn.visits.len());
+        let mut drawn = Vec::with_capacity(2 * yarn.visits.len());
         for visit in yarn.visits.clone().map(VisitId) {
             points.push(at(visit).as_vec3());
             let Some(next) = net.next(visit) else { continue };
             let middle = middles.get(&(visit, next)).or_else(|| middles.get(&(next, visit)));
             points.extend(middle.map(|m| m.as_vec3()));
             dyes.resize(points.len(), net.visits[visit.index()].dye);
+            drawn.resize(points.len(), radii[visit.index()] as f32);
         }
         dyes.resize(points.len(), dyes.last().copied().unwrap_or_default());
-        YarnCurve { points, closed: yarn.period.is_some(), radius: radius as f32, dyes }
+        drawn.resize(points.len(), drawn.last().copied().unwrap_or(materials.base.drawn_radius as f32));
+        YarnCurve { points, closed: yarn.period.is_some(), radii: drawn, dyes }
     };
     YarnCurves { curves: net.yarns.iter().map(curve).collect() }
 }
@@ -68,20 +74,37 @@ pub(crate) fn normal(net: &YarnNet, state: &YarnState, index: usize) -> DVec3 {
     vote.try_normalize().unwrap_or(node.normal)
 }
 
+/// Radius of the yarn at each visit, [visit_count] [m].
+fn radii(net: &YarnNet, materials: &Materials) -> Vec<f64> {
+    if materials.by_dye.is_empty() {
+        return vec![materials.base.drawn_radius; net.visits.len()];
+    }
+    net.visits.iter().map(|v| materials.of(v.dye).drawn_radius).collect()
+}
+
 /// Offset of each visit from its node: front to back along the normal, [visit_count] [m].
-fn offsets(net: &YarnNet, normals: &[DVec3], radius: f64) -> Vec<DVec3> {
+fn offsets(net: &YarnNet, normals: &[DVec3], radii: &[f64]) -> Vec<DVec3> {
     let mut offsets = vec![DVec3::ZERO; net.visits.len()];
     for (node, normal) in net.nodes.iter().zip(normals) {
-        for (rank, visit) in node.visits.iter().enumerate() {
-            offsets[visit.index()] = layer(node.visits.len(), rank) * radius * *normal;
+        for (visit, height) in stack(node.visits.iter().copied(), radii) {
+            offsets[visit.index()] = height * *normal;
         }
     }
     offsets
 }
 
-/// Place of a yarn in a stack of `count`, in radii, front to back: 1, −1 for two, 2, 0, −2 for three.
-fn layer(count: usize, rank: usize) -> f64 {
-    count as f64 - 1.0 - 2.0 * rank as f64
+/// Yarns that lie on each other, front to back, each with the height of its axis above the middle of the stack [m].
+fn stack<'a>(
+    visits: impl Iterator<Item = VisitId> + Clone + 'a,
+    radii: &'a [f64],
+) -> impl Iterator<Item = (VisitId, f64)> + 'a {
+    let radius = |v: VisitId| radii[v.index()];
+    let mut top: f64 = visits.clone().map(radius).sum();
+    visits.map(move |visit| {
+        let height = top - radius(visit);
+        top -= 2.0 * radius(visit);
+        (visit, height)
+    })
 }
 
 /// The control points in the middle of a stitch contact, one a yarn.
@@ -90,7 +113,7 @@ fn middles(
     state: &YarnState,
     normals: &[DVec3],
     contact: &StitchContact,
-    radius: f64,
+    radii: &[f64],
 ) -> Vec<((VisitId, VisitId), DVec3)> {
     let [p, q] = contact.new.map(|v| net.visits[v.index()].node.index());
     let (x0, x1) = (state.position[p], state.position[q]);
@@ -98,14 +121,16 @@ fn middles(
     let rank = |visit: VisitId| net.nodes[p].visits.iter().position(|v| *v == visit);
     let old_in_front = contact.old.first().and_then(|o| rank(o[0])) < rank(contact.new[0]);
     let to_old = if old_in_front { normals[p] } else { -normals[p] };
-    let side = contact.handedness * radius * to_old.cross(axis).normalize_or_zero();
+    let side = contact.handedness * to_old.cross(axis).normalize_or_zero();
     let normal = (normals[p] + normals[q]).normalize_or_zero();
     let middle = 0.5 * (x0 + x1);
-    let old =
-        contact.old.iter().enumerate().map(|(i, ends)| {
-            ((ends[0], ends[1]), middle + side + layer(contact.old.len(), i) * radius * normal)
-        });
-    std::iter::once(((contact.new[0], contact.new[1]), middle - side)).chain(old).collect()
+    let by_new = radii[contact.new[0].index()];
+    let firsts = contact.old.iter().map(|ends| ends[0]);
+    let thickest = firsts.clone().map(|v| radii[v.index()]).fold(0.0, f64::max);
+    let heights = stack(firsts, radii).map(|(_, height)| height);
+    let old = contact.old.iter().zip(heights);
+    let old = old.map(|(ends, height)| ((ends[0], ends[1]), middle + by_new * side + height * normal));
+    std::iter::once(((contact.new[0], contact.new[1]), middle - thickest * side)).chain(old).collect()
 }
 
 /// Samples a span that the least distance of yarns is measured with, and pictures are good with.
@@ -128,7 +153,31 @@ pub(crate) fn with_arc_length(curve: &YarnCurve) -> Vec<(Vec3, f32)> {
 mod tests {
     use super::*;
     use crate::clearance::least_distance;
+    use crate::material::Material;
     use crate::testing::swatch_model;
+
+    fn drawn_at(drawn_radius: f64) -> Materials {
+        Material { drawn_radius, ..Material::for_loop_width(3e-3) }.into()
+    }
+
+    #[test]
+    fn yarns_of_unlike_thickness_lie_on_each_other() {
+        let heights: Vec<f64> = stack((0..3).map(VisitId), &[1.0, 3.0, 2.0]).map(|(_, h)| h).collect();
+        assert_eq!(heights, [5.0, 1.0, -4.0]);
+        let net = swatch_model(6, 6).net;
+        let mut visits = (*net.visits).clone();
+        let thick: stitch_mesh::dye::Dye = "#c04030".parse().unwrap();
+        let half = visits.len() / 2;
+        visits[half..].iter_mut().for_each(|v| v.dye = thick);
+        let net = YarnNet { visits: std::sync::Arc::new(visits), ..(*net).clone() };
+        let mut materials = drawn_at(0.2e-3);
+        materials.by_dye.insert(thick, drawn_at(0.4e-3).base);
+        let drawn = curves(&net, &net.laid_state(), &materials);
+        let [curve] = &drawn.curves[..] else { panic!("one yarn") };
+        let change = curve.dyes.iter().position(|d| *d == thick).unwrap();
+        assert!(curve.radii[..change].iter().all(|r| *r == 0.2e-3));
+        assert!(curve.radii[change..].iter().all(|r| *r == 0.4e-3));
+    }
 
     #[test]
     fn normals_turn_with_the_fabric_and_keep_their_side() {
@@ -170,9 +219,9 @@ mod tests {
     #[test]
     fn middles_keep_yarns_from_passing_through_each_other() {
         let net = swatch_model(6, 6).net;
-        let drawn = curves(&net, &net.laid_state(), 0.3e-3);
+        let drawn = curves(&net, &net.laid_state(), &drawn_at(0.3e-3));
         let bare = YarnNet { contacts: Vec::new(), ..(*net).clone() };
-        let through = curves(&bare, &bare.laid_state(), 0.3e-3);
+        let through = curves(&bare, &bare.laid_state(), &drawn_at(0.3e-3));
         assert!(least_distance(&drawn) > 2.0 * least_distance(&through));
         assert!(least_distance(&through) < 0.1 * 0.6e-3);
     }
@@ -182,7 +231,7 @@ mod tests {
         let net = swatch_model(3, 3).net;
         let mut state = net.laid_state();
         state.position.fill(DVec3::ZERO);
-        let drawn = curves(&net, &state, 0.3e-3);
+        let drawn = curves(&net, &state, &drawn_at(0.3e-3));
         assert!(drawn.curves.iter().flat_map(|c| &c.points).all(|p| p.is_finite()));
     }
 }

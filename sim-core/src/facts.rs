@@ -2,10 +2,10 @@
 
 use crate::clearance::least_distance;
 use crate::curves::curves;
-use crate::material::Material;
+use crate::materials::Materials;
 use crate::model::Model;
 use crate::scene::Scene;
-use crate::step::clearance;
+use crate::step::clearances;
 use serde::{Deserialize, Serialize};
 use stitch_mesh::yarn_net::YarnState;
 
@@ -22,7 +22,7 @@ pub struct Facts {
     pub kinetic_j: f64,
     /// Largest strain of a segment: 0 unstretched, 0.01 one percent longer than its yarn.
     pub max_stretch: f64,
-    /// Least distance of two yarns' centre lines over their drawn diameter; 1 and more: no overlap.
+    /// Least distance of two yarns' centre lines over the diameter of the thinnest yarn as drawn; 1 and more: no overlap.
     pub min_yarn_distance_over_diameter: f64,
     /// How deep the yarn is in a body at the worst place [mm].
     pub max_penetration_mm: f64,
@@ -31,21 +31,24 @@ pub struct Facts {
 }
 
 /// The figures that follow from a state; the others stay empty.
-pub(crate) fn measure(model: &Model, material: &Material, scene: &Scene, state: &YarnState) -> Facts {
+pub(crate) fn measure(model: &Model, materials: &Materials, scene: &Scene, state: &YarnState) -> Facts {
     let strain = |q: [f64; 8]| {
         let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
         r.length() / (q[7] - q[3]) - 1.0
     };
     let strains = model.segments.iter().map(|s| strain(s.stencil.coordinates(state)));
-    let depth = |x: &glam::DVec3| {
-        let gaps = scene.bodies.iter().map(|b| clearance(material) - b.distance(*x).0);
+    let depth = |(x, clearance): (&glam::DVec3, f64)| {
+        let gaps = scene.bodies.iter().map(|b| clearance - b.distance(*x).0);
         gaps.fold(0.0, f64::max)
     };
-    let drawn = curves(&model.net, state, material.drawn_radius);
+    let deepest = state.position.iter().zip(clearances(model, materials)).map(depth).fold(0.0, f64::max);
+    let drawn = curves(&model.net, state, materials);
+    let radii = drawn.curves.iter().flat_map(|c| &c.radii);
+    let thinnest = f64::from(radii.copied().fold(f32::INFINITY, f32::min));
     Facts {
         max_stretch: strains.fold(0.0, f64::max),
-        min_yarn_distance_over_diameter: least_distance(&drawn) / (2.0 * material.drawn_radius),
-        max_penetration_mm: 1e3 * state.position.iter().map(depth).fold(0.0, f64::max),
+        min_yarn_distance_over_diameter: least_distance(&drawn) / (2.0 * thinnest),
+        max_penetration_mm: 1e3 * deepest,
         ..Facts::default()
     }
 }

@@ -17,11 +17,11 @@
 //!   lean. Between parallel yarns dᵢ is the fitted normal.
 //! - Eq. 4 clips −Aᵀb before it multiplies by (AᵀA)⁻¹, which can leave a λ below what any admissible one would be; here the
 //!   least squares are solved, by projected Gauss–Seidel.
-//! - Every contact has a cohesion λ₀ besides.
 //! - Slipping friction is not an explicit force of size μλ (with it u runs away within ten steps) but the secant spring
 //!   k = min(k_f, μλ/|u − ū + h u̇|), in the force and in the matrix.
+//! - μ and λ₀ are those of the two yarns that touch (`materials.rs`), so a yarn inside of a stack is held by each of its faces
+//!   as that one can. λ₀ comes on top of every λ.
 
-use crate::material::Material;
 use glam::DVec3;
 use smallvec::SmallVec;
 use stitch_mesh::ids::VisitId;
@@ -157,13 +157,13 @@ pub(crate) struct FrictionSpring {
 }
 
 impl FrictionSpring {
-    /// The spring for something at `u` that slides with `rate` under the normal force `press`, in a step `h`.
-    pub fn new(anchor: f64, u: f64, rate: f64, press: f64, h: f64, material: &Material) -> Self {
-        let limit = material.friction * press;
-        let reach = limit / material.friction_stiffness.max(1e-12);
+    /// The spring for something at `u` that slides with `rate` where friction holds up to `limit`, and sticks with `stick`
+    /// [N/m], in a step `h`.
+    pub fn new(anchor: f64, u: f64, rate: f64, limit: f64, h: f64, stick: f64) -> Self {
+        let reach = limit / stick.max(1e-12);
         let anchor = anchor.clamp(u - reach, u + reach);
         let stretch = (u - anchor + h * rate).abs();
-        Self { anchor, stiffness: material.friction_stiffness.min(limit / stretch.max(1e-12)) }
+        Self { anchor, stiffness: stick.min(limit / stretch.max(1e-12)) }
     }
 }
 
@@ -218,13 +218,12 @@ mod tests {
 
     #[test]
     fn friction_sticks_and_slips() {
-        let m = Material { friction: 0.5, friction_stiffness: 100.0, ..Material::for_loop_width(3e-3) };
-        let stick = FrictionSpring::new(0.0, 1e-3, 0.0, 1.0, 1e-3, &m);
+        let stick = FrictionSpring::new(0.0, 1e-3, 0.0, 0.5, 1e-3, 100.0);
         assert_eq!(stick, FrictionSpring { anchor: 0.0, stiffness: 100.0 });
-        let slip = FrictionSpring::new(0.0, 0.1, 1.0, 1.0, 1e-2, &m);
+        let slip = FrictionSpring::new(0.0, 0.1, 1.0, 0.5, 1e-2, 100.0);
         assert!((slip.anchor - 0.095).abs() < 1e-15);
         assert!((slip.stiffness * (0.1 - slip.anchor + 1e-2) - 0.5).abs() < 1e-12, "pulls with μλ");
-        let free = FrictionSpring::new(0.0, 0.1, 1.0, 0.0, 1e-2, &m);
+        let free = FrictionSpring::new(0.0, 0.1, 1.0, 0.0, 1e-2, 100.0);
         assert_eq!((free.anchor, free.stiffness), (0.1, 0.0));
     }
 }

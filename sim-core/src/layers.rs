@@ -2,7 +2,7 @@
 //!
 //! # Theory
 //! Nodes of one stitch are held apart by the yarn itself. Two nodes i, j that meet otherwise keep a distance, being as thick
-//! as the yarns stacked at them: d = (nᵢ + nⱼ) R with n visits and the drawn radius R. With r = xᵢ − xⱼ and n̂ = r/|r|:
+//! as the two yarns that lie on each other at each: d = 4R with the drawn radius R. With r = xᵢ − xⱼ and n̂ = r/|r|:
 //! - energy V = k/2 (d − |r|)₊² [J];
 //! - gradient −k (d − |r|)₊ n̂ on xᵢ, the opposite on xⱼ; stiffness k n̂ n̂ᵀ (that across n̂, which is negative, is left out);
 //! - Coulomb friction as a drag on the slip across n̂, c = min(m/h, μ N/|slip|), N the force above.
@@ -14,11 +14,9 @@
 //! other either. So d is at most half of the distance at which two nodes were laid, and no pair needs to be left out.
 //!
 //! # Practice
-//! Pairs change from step to step, and coupling blocks for them would change the pattern of the matrix (Cirio et al. put such
-//! blocks in a tail of it). Here every contact is **one-sided**: each node is braked against the *mean* velocity v̄ of the two at
-//! the start of the step, with 2k instead of k. Their relative motion is then that of the implicit step itself, since
-//! v₁ − v̄ is half of it; their common motion is not braked, as it would be against the other's old velocity, and momentum is
-//! lost only as far as v̄ changes within a step.
+//! Pairs change from step to step; the blocks between the two nodes of a contact go into the tail of the matrix
+//! (`solver/tail.rs`). Left out, so that each node is braked against the other's *old* velocity, they turn every contact into an
+//! anchor that falling fabric hangs on.
 //!
 //! As with bodies a contact is taken up in the step whose free flight would close the gap.
 
@@ -29,75 +27,61 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 /// Share of the distance at which two nodes were laid that they keep at least.
 const NEAREST: f64 = 0.5;
 
-/// Yarns that a node counts as at most when pairs are looked for: cast-ons that gather a whole row don't set the reach.
-const MOST_YARNS: f64 = 4.0;
-
 /// How far pairs are looked for at most, over the distance of touching: what comes from further away in one step is not seen.
 const FARTHEST: f64 = 4.0;
 
-/// A node braked by another one: force and damping on its position.
+/// Two nodes that press each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Brake {
-    /// Index of the node.
-    pub node: usize,
-    /// Force at the start of the step [N].
+pub(crate) struct Press {
+    /// Indices of the nodes i and j.
+    pub nodes: [usize; 2],
+    /// Force on i, the opposite of that on j [N].
     pub force: DVec3,
     /// n̂, unit.
     pub normal: DVec3,
-    /// 2k, against the velocity below along n̂ [N/m].
+    /// k [N/m].
     pub stiffness: f64,
-    /// 2c, against the velocity below across n̂ [kg/s].
+    /// c [kg/s].
     pub drag: f64,
-    /// v̄ [m/s].
-    pub velocity: DVec3,
 }
 
 /// How contacts are reckoned in a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LayerContact {
-    /// R [m].
-    pub radius: f64,
-    /// μ.
-    pub friction: f64,
+pub(crate) struct LayerContact<'a> {
+    /// Half thickness of the fabric at each node, [node_count] [m].
+    pub clearances: &'a [f64],
+    /// Mass of the yarn around each node, [node_count] [kg].
+    pub masses: &'a [f64],
+    /// √μ of the yarn at each node, so that the product of two is the geometric mean of theirs, [node_count].
+    pub grips: &'a [f64],
     /// k over the mass of the lighter node [1/s²].
     pub stiffness_by_mass: f64,
     /// h [s].
     pub step: f64,
 }
 
-/// How thick the nodes of a net are and how near they were laid.
+/// How near the nodes of a net were laid.
 pub(crate) struct Layers {
-    /// Yarns at each node, [node_count].
-    yarns: Vec<f64>,
     /// Where each node was laid, [node_count] [m].
     laid: Vec<DVec3>,
 }
 
 impl Layers {
     pub fn new(net: &YarnNet) -> Self {
-        Self {
-            yarns: net.nodes.iter().map(|n| n.visits.len() as f64).collect(),
-            laid: net.nodes.iter().map(|n| n.position).collect(),
-        }
+        Self { laid: net.nodes.iter().map(|n| n.position).collect() }
     }
 
-    /// Distance that two nodes keep [m].
-    fn distance(&self, a: usize, b: usize, radius: f64) -> f64 {
-        let thick = (self.yarns[a] + self.yarns[b]) * radius;
-        thick.min(NEAREST * self.laid[a].distance(self.laid[b]))
-    }
-
-    /// The contacts of a step from `state`, two brakes each; `masses` are those of the nodes.
-    pub fn brakes(&self, state: &YarnState, masses: &[f64], contact: LayerContact) -> Vec<Brake> {
-        let LayerContact { radius, friction, stiffness_by_mass, step } = contact;
-        let most = self.yarns.iter().copied().fold(0.0, f64::max);
-        let touching = 2.0 * most.min(MOST_YARNS) * radius;
+    /// The contacts of a step from `state`.
+    pub fn contacts(&self, state: &YarnState, contact: LayerContact) -> Vec<Press> {
+        let LayerContact { clearances, masses, grips, stiffness_by_mass, step } = contact;
+        let touching = 2.0 * clearances.iter().copied().fold(0.0, f64::max);
         let reach = (touching + step * relative_speed(&state.velocity)).min(FARTHEST * touching);
-        let mut brakes = Vec::new();
+        let mut found = Vec::new();
         near_pairs(&state.position, reach, |a, b| {
             let apart = state.position[a] - state.position[b];
             let (v_a, v_b) = (state.velocity[a], state.velocity[b]);
-            let distance = self.distance(a, b, radius);
+            let laid = self.laid[a].distance(self.laid[b]);
+            let distance = (clearances[a] + clearances[b]).min(NEAREST * laid);
             if nearest(apart, v_a - v_b, step) >= distance {
                 return;
             }
@@ -107,19 +91,11 @@ impl Layers {
             let stiffness = stiffness_by_mass * mass;
             let press = stiffness * (-gap).max(0.0);
             let slip = (v_a - v_b).reject_from_normalized(normal).length();
-            let drag = (friction * press / slip.max(1e-12)).min(mass / step);
+            let drag = (grips[a] * grips[b] * press / slip.max(1e-12)).min(mass / step);
             let force = -stiffness * gap * normal;
-            let brake = Brake {
-                node: a,
-                force,
-                normal,
-                stiffness: 2.0 * stiffness,
-                drag: 2.0 * drag,
-                velocity: 0.5 * (v_a + v_b),
-            };
-            brakes.extend([brake, Brake { node: b, force: -force, ..brake }]);
+            found.push(Press { nodes: [a, b], force, normal, stiffness, drag });
         });
-        brakes
+        found
     }
 }
 
@@ -141,8 +117,16 @@ mod tests {
     use crate::testing::swatch_model;
     use stitch_mesh::ids::FaceId;
 
-    const CONTACT: LayerContact =
-        LayerContact { radius: 0.4e-3, friction: 0.3, stiffness_by_mass: 1e6, step: 1e-3 };
+    const STEP: f64 = 1e-3;
+
+    fn contacts(layers: &Layers, state: &YarnState) -> Vec<Press> {
+        let count = state.position.len();
+        let (clearances, masses) = (vec![0.8e-3; count], vec![1e-6; count]);
+        let grips = vec![0.3_f64.sqrt(); count];
+        let (clearances, masses, grips) = (&clearances[..], &masses[..], &grips[..]);
+        let contact = LayerContact { clearances, masses, grips, stiffness_by_mass: 1e6, step: STEP };
+        layers.contacts(state, contact)
+    }
 
     /// Two nodes of a swatch that lie far from each other as laid, brought to a distance of `apart`.
     fn met(apart: f64, closing: f64) -> (Layers, YarnState, [usize; 2]) {
@@ -159,51 +143,43 @@ mod tests {
         (Layers::new(&net), state, [a, b])
     }
 
-    fn brakes(apart: f64, closing: f64) -> Vec<Brake> {
-        let (layers, state, [a, b]) = met(apart, closing);
-        let all = layers.brakes(&state, &vec![1e-6; state.position.len()], CONTACT);
-        all.into_iter().filter(|k| k.node == a || k.node == b).collect()
+    /// The contact of the two, if they have one; the first is the node that was set moving.
+    fn contact(apart: f64, closing: f64) -> Option<Press> {
+        let (layers, state, nodes) = met(apart, closing);
+        contacts(&layers, &state).into_iter().find(|c| c.nodes == nodes)
     }
 
     #[test]
     fn nodes_that_overlap_push_each_other_apart() {
-        let pair = brakes(1.5e-3, 0.0);
+        let found = contact(1.5e-3, 0.0).unwrap();
         let expected = 1e6 * 1e-6 * 0.1e-3;
-        assert!((pair[0].force - expected * pair[0].normal).length() < 1e-12);
-        assert_eq!(pair[0].force, -pair[1].force);
-        let held = 2.0 * 0.3 * expected / 0.1;
-        assert!((pair[0].drag - held).abs() < 1e-9 * held, "slips at the friction cone");
+        assert!((found.force - DVec3::new(0.0, 0.0, expected)).length() < 1e-12);
+        let held = 0.3 * expected / 0.1;
+        assert!((found.drag - held).abs() < 1e-9 * held, "slips at the friction cone");
     }
 
     #[test]
     fn nodes_that_pass_each_other_or_stay_apart_are_left_alone() {
-        assert_eq!(brakes(1.7e-3, 0.0), []);
-        assert_eq!(brakes(2.5e-3, 0.5), []);
-        assert_eq!(brakes(2.5e-3, -5.0), []);
+        assert_eq!(contact(1.7e-3, 0.0), None);
+        assert_eq!(contact(2.5e-3, 0.5), None);
+        assert_eq!(contact(2.5e-3, -5.0), None);
     }
 
     #[test]
-    fn nodes_that_would_fly_through_each_other_are_stopped_at_touching() {
-        let pair = brakes(2.5e-3, 5.0);
-        let [a, b] = [&pair[0], &pair[1]];
-        // A step of each node alone, as it is put into the system, of mass 1e-6 kg.
-        let after = |brake: &Brake, v: DVec3| {
-            let h = CONTACT.step;
-            let along =
-                brake.normal.dot(1e-6 * v + h * brake.force + h * h * brake.stiffness * brake.velocity);
-            along / (1e-6 + h * h * brake.stiffness)
-        };
-        let closing = after(a, DVec3::new(0.1, 0.0, -5.0)) - after(b, DVec3::ZERO);
-        let left = 0.9e-3 + CONTACT.step * closing;
-        println!("closing {closing}, gap left {left}");
-        // Light and soft as they are, two thirds of the way is stopped by 2k h²/m = 2.
-        assert!(closing > -3.0 && left > -2.0e-3);
+    fn nodes_that_would_fly_through_each_other_are_drawn_to_touching() {
+        let found = contact(2.5e-3, 5.0).unwrap();
+        // An implicit step of the pair alone is (m + 2kh²) w = m w₀ + 2hF for the velocity w at which the gap grows.
+        let (m, w) = (1e-6, -5.0);
+        let grows = m * w + 2.0 * STEP * found.force.dot(found.normal);
+        let after = grows / (m + 2.0 * STEP * STEP * found.stiffness);
+        let gap = 0.9e-3 + STEP * after;
+        assert!(gap > -1.5e-3 && after > -2.5, "{gap} {after}");
+        assert!(0.9e-3 + STEP * w < -4e-3, "on its own it would be through");
     }
 
     #[test]
     fn a_fabric_as_laid_does_not_touch_itself() {
         let net = swatch_model(8, 8).net;
-        let masses = vec![1e-6; net.nodes.len()];
-        assert_eq!(Layers::new(&net).brakes(&net.laid_state(), &masses, CONTACT), []);
+        assert_eq!(contacts(&Layers::new(&net), &net.laid_state()), []);
     }
 }

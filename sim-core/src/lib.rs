@@ -12,6 +12,7 @@
 //! | R, Y, B, ρ | yarn radius, Young's modulus, bending modulus, mass per length |
 //! | h | time step |
 
+mod air;
 mod assembly;
 mod bend;
 mod body;
@@ -26,12 +27,14 @@ mod layers;
 mod local;
 mod mass;
 mod material;
+mod materials;
 pub mod mesh_relax;
 mod model;
 mod near_pairs;
 mod noise;
 mod parallel;
 mod pin;
+mod preset;
 mod rigid;
 mod scene;
 mod simulator;
@@ -48,7 +51,9 @@ pub use clearance::least_distance;
 pub use curves::curves;
 pub use facts::Facts;
 pub use material::{Material, MaterialError};
+pub use materials::Materials;
 pub use model::{Model, NetError};
+pub use preset::Preset;
 pub use scene::{Pin, Scene, SceneError};
 pub use simulator::{SettleGoal, SettleProgress, Settled, SimError, Simulator, StepReport};
 pub use solver::cholesky::SolveError;

@@ -1,9 +1,10 @@
-//! What the yarn is made of, and how it is damped.
+//! What a yarn is made of, and how it is damped.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
+use stitch_mesh::dye::Dye;
 
-/// Parameters of the yarn and of its contacts. One material for the whole fabric.
+/// Parameters of a yarn and of its contacts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -43,44 +44,81 @@ pub struct Material {
 }
 
 /// A parameter that no yarn has.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("material: {name} is {value}, and must be {range}")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MaterialError {
+    /// The colour of the yarn; none for the material of all others.
+    pub yarn: Option<Dye>,
     /// The field.
     pub name: &'static str,
     /// What it holds.
     pub value: f64,
-    /// What it may hold.
-    pub range: &'static str,
+    /// Whether it may be zero.
+    pub may_be_zero: bool,
+    /// The most that it may be.
+    pub most: f64,
+}
+
+impl std::error::Error for MaterialError {}
+
+impl std::fmt::Display for MaterialError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { yarn, name, value, may_be_zero, most } = self;
+        match yarn {
+            Some(dye) => write!(f, "material of the yarn {dye}: ")?,
+            None => write!(f, "material: ")?,
+        }
+        let least = if *may_be_zero { "at least 0" } else { "above 0" };
+        write!(f, "{name} is {value:?}, and must be {least} and at most {most:?}")
+    }
 }
 
 impl Material {
-    /// A wool for loops of width `w` [m].
-    ///
-    /// The values for 3 mm are those with which stockinette curls and rib draws in as the real fabrics do. Other widths
-    /// are the *same fabric seen larger*: Young's modulus and volume density stay, every length grows with s = w / 3 mm,
-    /// forces and mass per length with s², the bending modulus with s² too (so that k_b grows as s⁴), times with s. Free of
-    /// gravity such a fabric does at w just what the first one does at 3 mm, s times slower; under its weight it sags
-    /// more by the factor s, as larger things do.
+    /// A wool for loops of width `w` [m]: [`Self::scaled`] from the values for 3 mm, with which stockinette curls and rib
+    /// draws in as the real fabrics do.
     pub fn for_loop_width(w: f64) -> Self {
-        let s = w / 3e-3;
-        Self {
-            radius: 0.75e-3 * s,
-            drawn_radius: 0.42e-3 * s,
+        let of_three_millimetres = Self {
+            radius: 0.75e-3,
+            drawn_radius: 0.42e-3,
             young_modulus: 1e7,
-            bending_modulus: 1e-3 * s * s,
-            density: 8.8e-4 * s * s,
-            wrap_stiffness: 1.2e-3 * s * s,
+            bending_modulus: 1e-3,
+            density: 8.8e-4,
+            wrap_stiffness: 1.2e-3,
             wrap_angle: FRAC_PI_2,
-            wrap_fade: 0.2e-3 * s,
+            wrap_fade: 0.2e-3,
             friction: 0.3,
-            cohesion: 5e-3 * s * s,
-            friction_stiffness: 200.0 * s,
+            cohesion: 5e-3,
+            friction_stiffness: 200.0,
             length_factor: 1.0,
-            parallel_stiffness: 5.3e3 * s,
-            parallel_distance: 0.45e-3 * s,
-            mass_damping: 3.0 / s,
-            stiffness_damping: 5e-3 * s,
+            parallel_stiffness: 5.3e3,
+            parallel_distance: 0.45e-3,
+            mass_damping: 3.0,
+            stiffness_damping: 5e-3,
+        };
+        of_three_millimetres.scaled(w / 3e-3)
+    }
+
+    /// The yarn of the *same fabric seen larger* by the factor s: Young's modulus and volume density stay, every length
+    /// grows with s, forces and mass per length with s², the bending modulus with s² too (so that k_b grows as s⁴), times
+    /// with s. Free of gravity such a fabric does just what the first one does, s times slower; under its weight it sags more
+    /// by the factor s, as larger things do.
+    pub fn scaled(&self, s: f64) -> Self {
+        Self {
+            radius: self.radius * s,
+            drawn_radius: self.drawn_radius * s,
+            young_modulus: self.young_modulus,
+            bending_modulus: self.bending_modulus * s * s,
+            density: self.density * s * s,
+            wrap_stiffness: self.wrap_stiffness * s * s,
+            wrap_angle: self.wrap_angle,
+            wrap_fade: self.wrap_fade * s,
+            friction: self.friction,
+            cohesion: self.cohesion * s * s,
+            friction_stiffness: self.friction_stiffness * s,
+            length_factor: self.length_factor,
+            parallel_stiffness: self.parallel_stiffness * s,
+            parallel_distance: self.parallel_distance * s,
+            mass_damping: self.mass_damping / s,
+            stiffness_damping: self.stiffness_damping * s,
         }
     }
 
@@ -94,37 +132,36 @@ impl Material {
         self.bending_modulus * PI * self.radius * self.radius
     }
 
-    /// Whether every parameter is finite and in its range.
+    /// Whether every parameter is finite and in its range. The ranges hold ropes and gossamer; what lies outside has the
+    /// wrong unit.
     pub fn validate(&self) -> Result<(), MaterialError> {
-        let positive = [
-            ("radius", self.radius),
-            ("drawn_radius", self.drawn_radius),
-            ("young_modulus", self.young_modulus),
-            ("bending_modulus", self.bending_modulus),
-            ("density", self.density),
-            ("wrap_fade", self.wrap_fade),
-            ("length_factor", self.length_factor),
+        // (field, value, may be zero, most)
+        let fields = [
+            ("radius", self.radius, false, 0.1),
+            ("drawn_radius", self.drawn_radius, false, 0.1),
+            ("young_modulus", self.young_modulus, false, 1e13),
+            ("bending_modulus", self.bending_modulus, false, 1e6),
+            ("density", self.density, false, 100.0),
+            ("wrap_stiffness", self.wrap_stiffness, true, 1e6),
+            ("wrap_angle", self.wrap_angle, true, 3.1),
+            ("wrap_fade", self.wrap_fade, false, 1.0),
+            ("friction", self.friction, true, 1e9),
+            ("cohesion", self.cohesion, true, 1e6),
+            ("friction_stiffness", self.friction_stiffness, true, 1e9),
+            ("length_factor", self.length_factor, false, 1e6),
+            ("parallel_stiffness", self.parallel_stiffness, true, 1e12),
+            ("parallel_distance", self.parallel_distance, true, 1.0),
+            ("mass_damping", self.mass_damping, true, 1e6),
+            ("stiffness_damping", self.stiffness_damping, true, 1e3),
         ];
-        let not_negative = [
-            ("wrap_stiffness", self.wrap_stiffness),
-            ("friction", self.friction),
-            ("cohesion", self.cohesion),
-            ("friction_stiffness", self.friction_stiffness),
-            ("parallel_stiffness", self.parallel_stiffness),
-            ("parallel_distance", self.parallel_distance),
-            ("mass_damping", self.mass_damping),
-            ("stiffness_damping", self.stiffness_damping),
-        ];
-        let check = |name, value: f64, sound: bool, range| {
-            if sound && value.is_finite() { Ok(()) } else { Err(MaterialError { name, value, range }) }
-        };
-        for (name, value) in positive {
-            check(name, value, value > 0.0, "positive and finite")?;
+        for (name, value, may_be_zero, most) in fields {
+            let least = if may_be_zero { 0.0 } else { f64::MIN_POSITIVE };
+            // NaN lies in no range.
+            if !(least..=most).contains(&value) {
+                return Err(MaterialError { yarn: None, name, value, may_be_zero, most });
+            }
         }
-        for (name, value) in not_negative {
-            check(name, value, value >= 0.0, "at least 0 and finite")?;
-        }
-        check("wrap_angle", self.wrap_angle, (0.0..PI).contains(&self.wrap_angle), "in 0..π")
+        Ok(())
     }
 }
 
@@ -137,10 +174,16 @@ mod tests {
         for w in [1e-3, 3e-3, 6e-3, 12e-3] {
             Material::for_loop_width(w).validate().unwrap();
         }
-        let absurd = Material { density: f64::NAN, ..Material::for_loop_width(3e-3) };
+        let wool = Material::for_loop_width(3e-3);
+        let absurd = Material { density: f64::NAN, ..wool.clone() };
         assert_eq!(absurd.validate().unwrap_err().name, "density");
-        let absurd = Material { friction: -1.0, ..Material::for_loop_width(3e-3) };
+        let absurd = Material { radius: 0.0, ..wool.clone() };
+        let message = absurd.validate().unwrap_err().to_string();
+        assert_eq!(message, "material: radius is 0.0, and must be above 0 and at most 0.1");
+        let absurd = Material { friction: -1.0, ..wool.clone() };
         assert!(absurd.validate().unwrap_err().to_string().contains("friction is -1"));
+        let absurd = Material { density: 880.0, ..wool };
+        assert!(absurd.validate().is_err(), "grams per metre");
     }
 
     #[test]

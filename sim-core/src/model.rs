@@ -15,12 +15,14 @@
 //!
 //! # Practice
 //! A model holds what follows from the net alone: who takes part, rest lengths and rest angles. Stiffnesses come from the
-//! [`Material`] when an element is evaluated, so changing the material rebuilds nothing. It lives as long as its net.
+//! [`Material`] of the element's yarn when it is evaluated, so changing a material rebuilds nothing. It lives as long as
+//! its net.
 
 use crate::bend::Bend;
 use crate::contact_length::ContactLength;
 use crate::local::Element;
 use crate::material::Material;
+use crate::materials::Materials;
 use crate::parallel::Parallel;
 use crate::stretch::Stretch;
 use crate::wrap::Wrap;
@@ -28,6 +30,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::{NodeId, VisitId};
 use stitch_mesh::yarn_net::{NodeKind, YarnNet, YarnState};
 
@@ -113,6 +116,8 @@ impl<const K: usize> Stencil<K> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SegmentTerm {
     pub stencil: Stencil<2>,
+    /// Its yarn, as an index into [`Model::dyes`].
+    pub dye: u32,
     /// Δu when laid [m].
     pub rest: f64,
     /// Whether it lies in a stitch contact.
@@ -166,6 +171,8 @@ impl Element<2> for Spacing {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BendTerm {
     pub stencil: Stencil<3>,
+    /// Its yarn, as an index into [`Model::dyes`].
+    pub dye: u32,
     /// Angle at which jamming starts [rad].
     pub jam_angle: f64,
 }
@@ -180,6 +187,8 @@ impl BendTerm {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WrapTerm {
     pub stencil: Stencil<4>,
+    /// The yarn that forms the new loop, as an index into [`Model::dyes`].
+    pub dye: u32,
     /// σ, the handedness of the contact.
     pub handedness: f64,
     /// L, rest length of the contact [m].
@@ -200,6 +209,10 @@ impl WrapTerm {
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(crate) net: Arc<YarnNet>,
+    /// The colours of its yarns.
+    pub(crate) dyes: Vec<Dye>,
+    /// The yarn of each visit, as an index into them, [visit_count].
+    pub(crate) dye_of: Vec<u32>,
     pub(crate) segments: Vec<SegmentTerm>,
     pub(crate) bends: Vec<BendTerm>,
     pub(crate) wraps: Vec<WrapTerm>,
@@ -215,7 +228,8 @@ impl Model {
     /// The elements of `net`.
     pub fn new(net: Arc<YarnNet>) -> Result<Self, NetError> {
         check_nodes(&net)?;
-        let segments = segments(&net)?;
+        let (dyes, dye_of) = dyes(&net);
+        let segments = segments(&net, &dye_of)?;
         let bends = bends(&net, &segments);
         let wraps = wraps(&net, &segments);
         let (start, sliding) = layout(&net);
@@ -232,7 +246,7 @@ impl Model {
             row.sort_unstable();
             row.dedup();
         }
-        Ok(Self { net, segments, bends, wraps, start, sliding, neighbours })
+        Ok(Self { net, dyes, dye_of, segments, bends, wraps, start, sliding, neighbours })
     }
 
     /// Number of unknowns.
@@ -251,21 +265,29 @@ impl Model {
         sizes
     }
 
+    /// The material of each colour in [`Self::dyes`].
+    pub(crate) fn resolve(&self, materials: &Materials) -> Vec<Material> {
+        self.dyes.iter().map(|dye| materials.of(*dye).clone()).collect()
+    }
+
     /// Potential energy of the yarn itself: stretch, bend, wrap and spacing [J].
-    pub fn elastic_energy(&self, material: &Material, state: &YarnState) -> f64 {
+    pub fn elastic_energy(&self, materials: &Materials, state: &YarnState) -> f64 {
+        let materials = self.resolve(materials);
+        let of = |dye: u32| &materials[dye as usize];
         let segment = |s: &SegmentTerm| {
-            let q: [f64; 8] = s.stencil.coordinates(state);
+            let (q, material): ([f64; 8], _) = (s.stencil.coordinates(state), of(s.dye));
             s.stretch(material).energy(&q) + s.spacing(material).energy(&[q[3], q[7]])
         };
         self.segments.iter().map(segment).sum::<f64>()
-            + self.bends.iter().map(|b| b.bend(material).energy(&b.stencil.coordinates(state))).sum::<f64>()
-            + self.wraps.iter().map(|w| w.wrap(material).energy(&w.stencil.points(state))).sum::<f64>()
+            + self.bends.iter().map(|b| b.bend(of(b.dye)).energy(&b.stencil.coordinates(state))).sum::<f64>()
+            + self.wraps.iter().map(|w| w.wrap(of(w.dye)).energy(&w.stencil.points(state))).sum::<f64>()
     }
 
     /// Kinetic energy [J].
-    pub fn kinetic_energy(&self, material: &Material, state: &YarnState) -> f64 {
+    pub fn kinetic_energy(&self, materials: &Materials, state: &YarnState) -> f64 {
+        let materials = self.resolve(materials);
         let of = |s: &SegmentTerm| {
-            let m = crate::mass::mass(material.density, &s.stencil.coordinates(state));
+            let m = crate::mass::mass(materials[s.dye as usize].density, &s.stencil.coordinates(state));
             let v: [f64; 8] = s.stencil.velocities(state);
             let momentum = |i: usize| (0..8).map(|j| m[i][j] * v[j]).sum::<f64>();
             0.5 * (0..8).map(|i| v[i] * momentum(i)).sum::<f64>()
@@ -274,11 +296,12 @@ impl Model {
     }
 
     /// Mass of the yarn around each node when laid, [node_count] [kg].
-    pub fn node_masses(&self, material: &Material) -> Vec<f64> {
+    pub fn node_masses(&self, materials: &Materials) -> Vec<f64> {
+        let materials = self.resolve(materials);
         let mut masses = vec![0.0; self.net.nodes.len()];
         for segment in &self.segments {
             for node in segment.stencil.nodes {
-                masses[node.index()] += 0.5 * material.density * segment.rest;
+                masses[node.index()] += 0.5 * materials[segment.dye as usize].density * segment.rest;
             }
         }
         masses
@@ -317,8 +340,18 @@ fn layout(net: &YarnNet) -> (Vec<u32>, Vec<u32>) {
     (start, sliding)
 }
 
+/// The colours of a net, and for each visit which it has.
+fn dyes(net: &YarnNet) -> (Vec<Dye>, Vec<u32>) {
+    let mut dyes: Vec<Dye> = net.visits.iter().map(|v| v.dye).collect();
+    dyes.sort_unstable();
+    dyes.dedup();
+    let place = |dye| dyes.partition_point(|d| *d < dye) as u32;
+    let of = net.visits.iter().map(|v| place(v.dye)).collect();
+    (dyes, of)
+}
+
 /// Segments of all yarns, each known to lie in a stitch contact or not.
-fn segments(net: &YarnNet) -> Result<Vec<SegmentTerm>, NetError> {
+fn segments(net: &YarnNet, dye_of: &[u32]) -> Result<Vec<SegmentTerm>, NetError> {
     let mut terms = Vec::with_capacity(net.visits.len());
     for segment in net.segments() {
         let [a, b] = segment.ends;
@@ -330,7 +363,8 @@ fn segments(net: &YarnNet) -> Result<Vec<SegmentTerm>, NetError> {
         let stencil = Stencil::new(net, segment.ends, [0.0, segment.wrap]);
         let crosses = stencil.nodes.iter().any(|n| net.nodes[n.index()].kind == NodeKind::Crossing);
         let closeness = if crosses { 0.5 } else { 1.0 };
-        terms.push(SegmentTerm { stencil, rest, in_contact: false, closeness });
+        let dye = dye_of[a.index()];
+        terms.push(SegmentTerm { stencil, dye, rest, in_contact: false, closeness });
     }
     let by_ends: HashMap<[VisitId; 2], usize> =
         terms.iter().enumerate().map(|(i, t)| (t.stencil.visits, i)).collect();
@@ -355,13 +389,14 @@ fn bends(net: &YarnNet, segments: &[SegmentTerm]) -> Vec<BendTerm> {
         let stencil =
             Stencil::new(net, [a, b, second.stencil.visits[1]], [0.0, turn, turn + second.stencil.turn[1]]);
         let rest_angle = Bend::angle(&stencil.coordinates(&laid));
-        Some(BendTerm { stencil, jam_angle: FRAC_PI_2.max(rest_angle + JAM_MARGIN) })
+        Some(BendTerm { stencil, dye: second.dye, jam_angle: FRAC_PI_2.max(rest_angle + JAM_MARGIN) })
     };
     segments.iter().filter_map(bend).collect()
 }
 
 fn wraps(net: &YarnNet, segments: &[SegmentTerm]) -> Vec<WrapTerm> {
-    let rest: HashMap<[VisitId; 2], f64> = segments.iter().map(|s| (s.stencil.visits, s.rest)).collect();
+    let by_ends: HashMap<[VisitId; 2], &SegmentTerm> =
+        segments.iter().map(|s| (s.stencil.visits, s)).collect();
     // The neighbour of `visit` on its yarn that is not the other end of the contact.
     let outer = |visit: VisitId, other: VisitId| {
         if net.next(visit) == Some(other) { net.prev(visit) } else { net.next(visit) }
@@ -369,13 +404,18 @@ fn wraps(net: &YarnNet, segments: &[SegmentTerm]) -> Vec<WrapTerm> {
     let mut terms = Vec::new();
     for contact in &net.contacts {
         let [p, q] = contact.new;
-        let length = rest.get(&[p, q]).or_else(|| rest.get(&[q, p])).copied().unwrap_or_default();
+        let Some(new) = by_ends.get(&[p, q]).or_else(|| by_ends.get(&[q, p])) else { continue };
         for &[old_p, old_q] in &contact.old {
             let quads = [(outer(old_p, old_q), outer(q, p)), (outer(p, q), outer(old_q, old_p))];
             for quad in quads {
                 let (Some(x4), Some(x3)) = quad else { continue };
                 let stencil = Stencil::new(net, [x4, p, q, x3], [0.0; 4]);
-                terms.push(WrapTerm { stencil, handedness: contact.handedness, rest: length });
+                terms.push(WrapTerm {
+                    stencil,
+                    dye: new.dye,
+                    handedness: contact.handedness,
+                    rest: new.rest,
+                });
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What surrounds the fabric: gravity, bodies, pins and the time step. Y is up.
+//! What surrounds the fabric: gravity, air, bodies, pins and the time step. Y is up.
 
 use crate::body::Body;
 use glam::DVec3;
@@ -15,12 +15,14 @@ pub struct Pin {
     pub stiffness: f64,
 }
 
-/// Gravity, bodies, pins and the time step.
+/// Gravity, air, bodies, pins and the time step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scene {
     /// Acceleration of gravity [m/s²].
     pub gravity: DVec3,
+    /// Density of the air around, 1.2 in a room and 0 for none [kg/m³].
+    pub air: f64,
     /// Bodies that the fabric lies on.
     pub bodies: Vec<Body>,
     /// Pinned nodes.
@@ -31,7 +33,13 @@ pub struct Scene {
 
 impl Default for Scene {
     fn default() -> Self {
-        Self { gravity: DVec3::new(0.0, -9.81, 0.0), bodies: Vec::new(), pins: Vec::new(), time_step: 5e-3 }
+        Self {
+            gravity: DVec3::new(0.0, -9.81, 0.0),
+            air: 0.0,
+            bodies: Vec::new(),
+            pins: Vec::new(),
+            time_step: 5e-3,
+        }
     }
 }
 
@@ -44,6 +52,9 @@ pub enum SceneError {
     /// Gravity is infinite or NaN.
     #[error("scene: gravity is {0}")]
     Gravity(DVec3),
+    /// The density of the air is negative, infinite or NaN.
+    #[error("scene: the density of the air is {0} kg/m³, and must be at least 0")]
+    Air(f64),
     /// A body with a number that makes no sense.
     #[error("scene: body {0} has a number that is not finite or a negative one for a size or friction")]
     Body(usize),
@@ -75,6 +86,9 @@ impl Scene {
         }
         if !self.gravity.is_finite() {
             return Err(SceneError::Gravity(self.gravity));
+        }
+        if !(self.air >= 0.0 && self.air.is_finite()) {
+            return Err(SceneError::Air(self.air));
         }
         if let Some(i) = self.bodies.iter().position(|b| !b.is_valid()) {
             return Err(SceneError::Body(i));

@@ -2,7 +2,9 @@
 
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
-use crate::material::{Material, MaterialError};
+use crate::local::LEAST_LENGTH;
+use crate::material::MaterialError;
+use crate::materials::Materials;
 use crate::model::{Model, NetError};
 use crate::noise::unit_hash;
 use crate::scene::{Scene, SceneError};
@@ -12,6 +14,7 @@ use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stitch_mesh::ids::NodeId;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
@@ -56,6 +59,9 @@ pub enum SimError {
     /// A yarn runs backwards or has no length between two visits of the state.
     #[error("the state leaves no yarn on segment {0}")]
     StateWithoutYarn(usize),
+    /// The two ends of a segment are at the same place, so that it has no direction.
+    #[error("nodes {} and {} follow each other on a yarn and are at the same place", .0[0], .0[1])]
+    CoincidentNodes([NodeId; 2]),
     /// The solver could not be set up.
     #[error(transparent)]
     Solver(#[from] SolveError),
@@ -113,7 +119,7 @@ pub enum Settled {
 pub struct Simulator {
     stepper: Stepper,
     take_in: TakeIn,
-    material: Material,
+    materials: Materials,
     scene: Scene,
     now: Stuck,
     /// Step to try next [s].
@@ -127,11 +133,12 @@ impl Simulator {
     /// A simulation of `net` from `state`, which may be its laid state. Yarns stick where they are.
     pub fn new(
         net: &Arc<YarnNet>,
-        material: Material,
+        materials: impl Into<Materials>,
         scene: Scene,
         mut state: YarnState,
     ) -> Result<Self, SimError> {
-        material.validate()?;
+        let materials = materials.into();
+        materials.validate()?;
         scene.validate(net.nodes.len())?;
         let mut model = Model::new(Arc::clone(net))?;
         let take_in = TakeIn::new(net);
@@ -141,13 +148,13 @@ impl Simulator {
             let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
             *x += DVec3::new(noise(0), noise(1), noise(2));
         }
-        let stepper = Stepper::new(model, &material)?;
+        let stepper = Stepper::new(model, &materials)?;
         let anchors = Anchors::at(&stepper.stacks, &state.sliding);
         let step = scene.time_step;
         Ok(Self {
             stepper,
             take_in,
-            material,
+            materials,
             scene,
             now: Stuck { state, anchors },
             step,
@@ -166,7 +173,7 @@ impl Simulator {
         let Stepper { model, stacks, .. } = &mut self.stepper;
         self.take_in.step(model, state, (stacks, anchors), self.step);
         loop {
-            match self.stepper.step(&self.now, &self.material, &self.scene, self.step) {
+            match self.stepper.step(&self.now, &self.scene, self.step) {
                 Ok(next) => {
                     self.now = next;
                     let report = StepReport { time_step: self.step, rejected };
@@ -197,7 +204,7 @@ impl Simulator {
         progress: &mut dyn FnMut(SettleProgress) -> ControlFlow<()>,
     ) -> Result<Settled, SimError> {
         let start = self.time;
-        let mass: f64 = self.stepper.model.node_masses(&self.material).iter().sum();
+        let mass: f64 = self.stepper.model.node_masses(&self.materials).iter().sum();
         loop {
             self.step()?;
             let time_s = self.time - start;
@@ -231,9 +238,9 @@ impl Simulator {
         &self.now.state
     }
 
-    /// The material.
-    pub fn material(&self) -> &Material {
-        &self.material
+    /// The materials of its yarns.
+    pub fn materials(&self) -> &Materials {
+        &self.materials
     }
 
     /// The scene.
@@ -254,17 +261,18 @@ impl Simulator {
         Ok(())
     }
 
-    /// Changes the material; refused as a whole if anything in it makes no sense.
-    pub fn set_material(&mut self, material: Material) -> Result<(), SimError> {
-        material.validate()?;
-        self.stepper.set_material(&material);
-        self.material = material;
+    /// Changes the materials; refused as a whole if anything in them makes no sense.
+    pub fn set_materials(&mut self, materials: impl Into<Materials>) -> Result<(), SimError> {
+        let materials = materials.into();
+        materials.validate()?;
+        self.stepper.set_materials(&materials);
+        self.materials = materials;
         Ok(())
     }
 
     /// Kinetic energy [J].
     pub fn kinetic_energy(&self) -> f64 {
-        self.stepper.model.kinetic_energy(&self.material, self.state())
+        self.stepper.model.kinetic_energy(&self.materials, self.state())
     }
 
     /// What there is to report of the simulation so far. Looks for the closest yarns, which takes about as long as a step.
@@ -275,7 +283,7 @@ impl Simulator {
             time_s: self.time,
             kinetic_j: self.kinetic_energy(),
             rejected_steps: self.rejected,
-            ..facts::measure(&self.stepper.model, &self.material, &self.scene, self.state())
+            ..facts::measure(&self.stepper.model, &self.materials, &self.scene, self.state())
         }
     }
 }
@@ -294,8 +302,15 @@ fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {
         return Err(SimError::StateNotFinite);
     }
     let yarn = |q: [f64; 8]| q[7] - q[3];
-    match model.segments.iter().position(|s| yarn(s.stencil.coordinates(state)) <= 0.0) {
-        Some(segment) => Err(SimError::StateWithoutYarn(segment)),
+    if let Some(segment) = model.segments.iter().position(|s| yarn(s.stencil.coordinates(state)) <= 0.0) {
+        return Err(SimError::StateWithoutYarn(segment));
+    }
+    let apart = |nodes: [NodeId; 2]| {
+        let [a, b] = nodes.map(|n| state.position[n.index()]);
+        a.distance(b) > LEAST_LENGTH
+    };
+    match model.segments.iter().map(|s| s.stencil.nodes).find(|nodes| !apart(*nodes)) {
+        Some(nodes) => Err(SimError::CoincidentNodes(nodes)),
         None => Ok(()),
     }
 }

@@ -14,17 +14,20 @@ use crate::assembly::{Start, System};
 use crate::body::BodyContact;
 use crate::curves::normal;
 use crate::friction::{Anchors, FrictionSpring, PerYarn, Stack};
-use crate::layers::{LayerContact, Layers};
+use crate::layers::{LayerContact, Layers, Press};
 use crate::local::Element;
 use crate::material::Material;
-use crate::model::{FROZEN, Model};
+use crate::materials::{Materials, Touch};
+use crate::model::{FROZEN, Model, SegmentTerm};
 use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
 use crate::solver::Solver;
 use crate::solver::cholesky::SolveError;
-use glam::DVec3;
+use crate::solver::tail::Link;
+use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
-use stitch_mesh::yarn_net::YarnState;
+use stitch_mesh::ids::VisitId;
+use stitch_mesh::yarn_net::{Node, YarnState};
 
 /// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
 /// weight, at 1e4 a corner that touches down alone upsets the conditioning.
@@ -52,8 +55,14 @@ pub(crate) struct Stepper {
     pub model: Model,
     pub system: System,
     pub solver: Solver,
+    /// Of each colour of the model.
+    materials: Vec<Material>,
     /// Mass of the yarn around each node [node_count] [kg].
     masses: Vec<f64>,
+    /// Distance that each node keeps from bodies, half of that from other layers [node_count] [m].
+    clearances: Vec<f64>,
+    /// √μ of the yarn at each node [node_count].
+    grips: Vec<f64>,
     layers: Layers,
     /// The nodes at which yarns slide on each other.
     pub stacks: Vec<Stack>,
@@ -68,39 +77,50 @@ pub(crate) struct Stuck {
 }
 
 impl Stepper {
-    pub fn new(model: Model, material: &Material) -> Result<Self, SolveError> {
+    pub fn new(model: Model, materials: &Materials) -> Result<Self, SolveError> {
         let system = System::new(&model);
         let solver = Solver::new(&model, &system.matrix)?;
-        let masses = model.node_masses(material);
         let layers = Layers::new(&model.net);
         let stacks = Stack::all(&model.net);
-        Ok(Self { model, system, solver, masses, layers, stacks })
+        let mut stepper = Self {
+            model,
+            system,
+            solver,
+            materials: Vec::new(),
+            masses: Vec::new(),
+            clearances: Vec::new(),
+            grips: Vec::new(),
+            layers,
+            stacks,
+        };
+        stepper.set_materials(materials);
+        Ok(stepper)
     }
 
-    pub fn set_material(&mut self, material: &Material) {
-        self.masses = self.model.node_masses(material);
+    pub fn set_materials(&mut self, materials: &Materials) {
+        self.materials = self.model.resolve(materials);
+        self.masses = self.model.node_masses(materials);
+        self.clearances = clearances(&self.model, materials);
+        let grip =
+            |node: &Node| materials.of(self.model.net.visits[node.visits[0].index()].dye).friction.sqrt();
+        self.grips = self.model.net.nodes.iter().map(grip).collect();
     }
 
     /// The state after a step of `h` [s] from `now`.
-    pub fn step(
-        &mut self,
-        now: &Stuck,
-        material: &Material,
-        scene: &Scene,
-        h: f64,
-    ) -> Result<Stuck, Rejection> {
+    pub fn step(&mut self, now: &Stuck, scene: &Scene, h: f64) -> Result<Stuck, Rejection> {
         let state = &now.state;
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
-        let start = Start { material, state, gravity: scene.gravity, omega: rotation.omega, step: h };
+        let Scene { gravity, air, .. } = *scene;
+        let start = Start { materials: &self.materials, state, gravity, air, omega: rotation.omega, step: h };
         self.system.assemble(&self.model, start);
-        let anchors = self.add_friction(now, material, h);
-        self.add_layers(state, material, scene, h);
-        let touched = self.add_bodies(state, material, scene, h) + self.add_pins(state, scene, h);
+        let anchors = self.add_friction(now, h);
+        self.add_layers(state, scene, h);
+        let touched = self.add_bodies(state, scene, h) + self.add_pins(state, scene, h);
         let mut solution = self.rates(state);
         self.solver.solve(&self.model, &self.system.matrix, &self.system.rhs, &mut solution)?;
         let (mut velocity, rate) = self.split(&solution);
-        if touched == 0 {
-            let kept = Rotation { omega: rotation.omega / (1.0 + h * material.mass_damping), ..rotation };
+        if touched == 0 && air == 0.0 {
+            let kept = Rotation { omega: rotation.omega / (1.0 + h * self.mean_mass_damping()), ..rotation };
             self.keep_rotation(state, &mut velocity, kept);
         }
         let next = advanced(state, velocity, rate, h);
@@ -109,49 +129,50 @@ impl Stepper {
     }
 
     /// Compression from the forces just assembled, and the friction springs that it carries. Gives the moved anchors.
-    fn add_friction(&mut self, now: &Stuck, material: &Material, h: f64) -> Anchors {
+    fn add_friction(&mut self, now: &Stuck, h: f64) -> Anchors {
         let mut anchors = now.anchors.clone();
         let (slid, rate) = (&now.state.sliding, &now.state.sliding_velocity);
-        for stack in &self.stacks {
-            let pull: PerYarn<DVec3> = stack.visits.iter().map(|v| self.system.pull[v.index()]).collect();
-            let back = if stack.visits.len() > 2 {
-                -normal(&self.model.net, &now.state, stack.node)
-            } else {
-                DVec3::ZERO
-            };
-            let mut press: PerYarn<f64> = SmallVec::from_elem(0.0, stack.visits.len());
+        let Self { model, system, materials, stacks, .. } = self;
+        let material = |v: VisitId| &materials[model.dye_of[v.index()] as usize];
+        for stack in stacks {
+            let pull: PerYarn<DVec3> = stack.visits.iter().map(|v| system.pull[v.index()]).collect();
+            let many = stack.visits.len() > 2;
+            let back = if many { -normal(&model.net, &now.state, stack.node) } else { DVec3::ZERO };
+            let mut limits: PerYarn<f64> = SmallVec::from_elem(0.0, stack.visits.len());
             for (i, lambda) in stack.compression(&pull, back).iter().enumerate() {
-                let lambda = lambda + material.cohesion;
+                let [a, b] = [stack.visits[i], stack.visits[i + 1]];
+                let limit = Touch::between(material(a), material(b)).limit(*lambda);
                 if !stack.parallel[i] {
-                    press[i] += lambda;
-                    press[i + 1] += lambda;
+                    limits[i] += limit;
+                    limits[i + 1] += limit;
                     continue;
                 }
-                let [a, b] = [stack.visits[i].index(), stack.visits[i + 1].index()];
+                let stick = material(a).friction_stiffness;
+                let [a, b] = [a.index(), b.index()];
                 let (apart, slip) = (slid[a] - slid[b], rate[a] - rate[b]);
-                let spring = FrictionSpring::new(anchors.between[a], apart, slip, lambda, h, material);
+                let spring = FrictionSpring::new(anchors.between[a], apart, slip, limit, h, stick);
                 anchors.between[a] = spring.anchor;
-                let dofs = [a, b].map(|v| self.model.sliding[v] as usize);
-                self.system.add_spring_between(self.model.start[stack.node], dofs, &spring, apart, h);
+                let dofs = [a, b].map(|v| model.sliding[v] as usize);
+                system.add_spring_between(model.start[stack.node], dofs, &spring, apart, h);
             }
-            for (visit, press) in stack.visits.iter().zip(press).filter(|(_, press)| *press > 0.0) {
-                let v = visit.index();
-                let spring = FrictionSpring::new(anchors.own[v], slid[v], rate[v], press, h, material);
+            for (visit, limit) in stack.visits.iter().zip(limits).filter(|(_, limit)| *limit > 0.0) {
+                let (v, stick) = (visit.index(), material(*visit).friction_stiffness);
+                let spring = FrictionSpring::new(anchors.own[v], slid[v], rate[v], limit, h, stick);
                 anchors.own[v] = spring.anchor;
-                self.system.add_spring(self.model.sliding[v] as usize, &spring, slid[v], h);
+                system.add_spring(model.sliding[v] as usize, &spring, slid[v], h);
             }
         }
         anchors
     }
 
     /// Gives the number of contacts.
-    fn add_bodies(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) -> usize {
+    fn add_bodies(&mut self, state: &YarnState, scene: &Scene, h: f64) -> usize {
         let mut count = 0;
         for &body in &scene.bodies {
             for node in 0..state.position.len() {
                 let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
                 let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
-                let contact = BodyContact { body, clearance: clearance(material), stiffness };
+                let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
                 let (gap, normal) = contact.gap(x);
                 if gap + h * v.dot(normal).min(0.0) >= 0.0 {
                     continue;
@@ -167,25 +188,24 @@ impl Stepper {
     }
 
     /// Layers of the fabric that lie on each other.
-    fn add_layers(&mut self, state: &YarnState, material: &Material, scene: &Scene, h: f64) {
+    fn add_layers(&mut self, state: &YarnState, scene: &Scene, h: f64) {
         let contact = LayerContact {
-            radius: material.drawn_radius,
-            friction: material.friction,
+            clearances: &self.clearances,
+            masses: &self.masses,
+            grips: &self.grips,
             stiffness_by_mass: BODY_STIFFNESS / scene.time_step.powi(2),
             step: h,
         };
-        for brake in self.layers.brakes(state, &self.masses, contact) {
-            let n = brake.normal.to_array();
-            let entry = |i: usize, j: usize| {
-                let across = f64::from(u8::from(i == j)) - n[i] * n[j];
-                h * h * brake.stiffness * n[i] * n[j] + h * brake.drag * across
-            };
-            let start = self.model.start[brake.node] as usize;
-            for i in 0..3 {
-                let kept: f64 = (0..3).map(|j| entry(i, j) * brake.velocity[j]).sum();
-                self.system.rhs[start + i] += h * brake.force[i] + kept;
+        for Press { nodes, force, normal, stiffness, drag } in self.layers.contacts(state, contact) {
+            let along = DMat3::from_cols(normal.x * normal, normal.y * normal, normal.z * normal);
+            let block = h * (h * stiffness * along + drag * (DMat3::IDENTITY - along));
+            let start = nodes.map(|n| self.model.start[n]);
+            for (node, force) in nodes.into_iter().zip([force, -force]) {
+                let first = self.model.start[node] as usize;
+                (0..3).for_each(|i| self.system.rhs[first + i] += h * force[i]);
+                self.add_block(node, |i, j| block.col(j)[i]);
             }
-            self.add_block(brake.node, entry);
+            self.system.matrix.tail.push(Link { start, block });
         }
     }
 
@@ -195,6 +215,13 @@ impl Stepper {
             self.add_point(pin.node as usize, pin, state.position[pin.node as usize], h);
         }
         scene.pins.len()
+    }
+
+    /// α of the whole fabric: that of its yarns by their mass [1/s].
+    fn mean_mass_damping(&self) -> f64 {
+        let mass = |s: &SegmentTerm| self.materials[s.dye as usize].density * s.rest;
+        let sum = |of: &dyn Fn(&SegmentTerm) -> f64| self.model.segments.iter().map(of).sum::<f64>();
+        sum(&|s| mass(s) * self.materials[s.dye as usize].mass_damping) / sum(&mass)
     }
 
     /// Adds a force on the position of one node.
@@ -281,7 +308,10 @@ fn advanced(state: &YarnState, velocity: Vec<DVec3>, sliding_velocity: Vec<f64>,
     }
 }
 
-/// Distance that nodes keep from bodies: two yarns lie on each other at a node [m].
-pub(crate) fn clearance(material: &Material) -> f64 {
-    2.0 * material.drawn_radius
+/// Distance that nodes keep from bodies, [node_count]: two yarns lie on each other at a node, each as thick as the yarns
+/// there in the mean [m].
+pub(crate) fn clearances(model: &Model, materials: &Materials) -> Vec<f64> {
+    let radius = |v: &VisitId| materials.of(model.net.visits[v.index()].dye).drawn_radius;
+    let of = |node: &Node| 2.0 * node.visits.iter().map(radius).sum::<f64>() / node.visits.len() as f64;
+    model.net.nodes.iter().map(of).collect()
 }

@@ -5,7 +5,7 @@
 //! Time goes no faster than on the clock, so that a small swatch falls as one would see it fall.
 
 use crate::curves::curves;
-use crate::material::Material;
+use crate::materials::Materials;
 use crate::scene::Scene;
 use crate::simulator::{SimError, Simulator};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -23,8 +23,8 @@ pub enum SimCommand {
     Load {
         /// The net.
         net: Arc<YarnNet>,
-        /// Its material.
-        material: Material,
+        /// The materials of its yarns.
+        materials: Materials,
         /// What surrounds it.
         scene: Scene,
         /// Where it starts; as it was laid, if nowhere else.
@@ -38,8 +38,8 @@ pub enum SimCommand {
     StepOnce,
     /// Replace the scene: dragging a pin, moving a body.
     SetScene(Scene),
-    /// Replace the material.
-    SetMaterial(Material),
+    /// Replace the materials.
+    SetMaterials(Materials),
     /// Forget the net.
     Stop,
 }
@@ -51,7 +51,7 @@ pub struct Snapshot {
     pub generation: u64,
     /// The state; the one loaded, if that can't be simulated.
     pub state: YarnState,
-    /// Its yarns, drawn with the material's radius; none where the state does not belong to the net.
+    /// Its yarns, drawn with the radii of their materials; none where the state does not belong to the net.
     pub curves: YarnCurves,
     /// Simulated time since the load [s].
     pub time_s: f64,
@@ -117,7 +117,7 @@ struct Run {
     /// None where the net, material, scene or state can't be simulated.
     simulator: Option<Simulator>,
     loaded: Arc<YarnState>,
-    radius: f64,
+    materials: Materials,
     playing: bool,
     error: Option<String>,
     ms_per_step: f64,
@@ -160,10 +160,10 @@ impl Worker {
 
     fn carry_out(&mut self, command: SimCommand) {
         match (command, &mut self.run) {
-            (SimCommand::Load { net, material, scene, state }, run) => {
+            (SimCommand::Load { net, materials, scene, state }, run) => {
                 self.loads += 1;
                 let state = state.unwrap_or_else(|| Arc::new(net.laid_state()));
-                *run = Some(Run::new(net, material, scene, state));
+                *run = Some(Run::new(net, materials, scene, state));
             }
             (SimCommand::Stop, run) => *run = None,
             (_, None) => {}
@@ -171,9 +171,9 @@ impl Worker {
             (SimCommand::Pause, Some(run)) => run.playing = false,
             (SimCommand::StepOnce, Some(run)) => run.step(),
             (SimCommand::SetScene(scene), Some(run)) => run.set(|s| s.set_scene(scene)),
-            (SimCommand::SetMaterial(material), Some(run)) => {
-                run.radius = material.drawn_radius;
-                run.set(|s| s.set_material(material));
+            (SimCommand::SetMaterials(materials), Some(run)) => {
+                run.materials = materials.clone();
+                run.set(|s| s.set_materials(materials));
             }
         }
     }
@@ -186,9 +186,8 @@ impl Worker {
 }
 
 impl Run {
-    fn new(net: Arc<YarnNet>, material: Material, scene: Scene, state: Arc<YarnState>) -> Self {
-        let radius = material.drawn_radius;
-        let made = Simulator::new(&net, material, scene, (*state).clone());
+    fn new(net: Arc<YarnNet>, materials: Materials, scene: Scene, state: Arc<YarnState>) -> Self {
+        let made = Simulator::new(&net, materials.clone(), scene, (*state).clone());
         let (simulator, error) = match made {
             Ok(simulator) => (Some(simulator), None),
             Err(error) => (None, Some(error.to_string())),
@@ -197,7 +196,7 @@ impl Run {
             net,
             simulator,
             loaded: state,
-            radius,
+            materials,
             playing: false,
             error,
             ms_per_step: 0.0,
@@ -239,7 +238,7 @@ impl Run {
         Snapshot {
             generation,
             state: state.clone(),
-            curves: if drawable { curves(&self.net, state, self.radius) } else { YarnCurves::default() },
+            curves: if drawable { curves(&self.net, state, &self.materials) } else { YarnCurves::default() },
             time_s: self.simulator.as_ref().map_or(0.0, Simulator::time_s),
             playing: self.playing,
             error: self.error.clone(),
@@ -251,6 +250,7 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Material;
     use std::sync::mpsc::Receiver;
 
     /// A thread, and what its wake-ups arrive at.
@@ -264,8 +264,8 @@ mod tests {
         let net = Arc::clone(&crate::testing::swatch_model(4, 4).net);
         let mut state = net.laid_state();
         spoil(&mut state);
-        let material = Material::for_loop_width(3e-3);
-        thread.send(SimCommand::Load { net, material, scene: Scene::empty(), state: Some(Arc::new(state)) })
+        let materials = Material::for_loop_width(3e-3).into();
+        thread.send(SimCommand::Load { net, materials, scene: Scene::empty(), state: Some(Arc::new(state)) })
     }
 
     /// Waits for a snapshot that `is` so.

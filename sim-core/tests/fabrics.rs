@@ -103,7 +103,8 @@ fn plain_knit_has_at_most_eleven_blocks_a_row() {
 fn yarns_of_a_flat_fabric_pass_each_other() {
     // Corners left out: there the ends of three rows meet in one place.
     let net = stockinette(8, 8);
-    let curves = sim_core::curves(&net, &net.laid_state(), 0.3e-3);
+    let thin = Material { drawn_radius: 0.3e-3, ..Material::for_loop_width(WIDTH) };
+    let curves = sim_core::curves(&net, &net.laid_state(), &thin.into());
     let least = least_distance(&curves) / 0.6e-3;
     println!("least distance {least:.2} diameters");
     assert!(least > 0.2);
@@ -115,9 +116,21 @@ fn a_rolled_up_edge_does_not_pass_through_itself() {
     let net = stockinette(8, 24);
     let mut simulator = free(&net);
     run(&mut simulator, 1.0);
-    let least = least_layer_distance(&net, simulator.state(), simulator.material().drawn_radius);
+    let least = least_layer_distance(&net, simulator.state(), simulator.materials().base.drawn_radius);
     println!("layers {least:.2} of their thickness apart, size {:.1}", 1e3 * size(simulator.state()));
     assert!((0.85..1.0).contains(&least), "rolled up until it touches, and no further");
+    // The forces between layers are no outer ones: the roll falls as anything does.
+    let speed = |simulator: &Simulator| {
+        let velocity = &simulator.state().velocity;
+        velocity.iter().map(|v| v.y).sum::<f64>() / velocity.len() as f64
+    };
+    let before = speed(&simulator);
+    simulator.set_scene(Scene { air: 0.0, ..Scene::default() }).unwrap();
+    run(&mut simulator, 1.05);
+    let gained = before - speed(&simulator);
+    println!("falls {gained:.4} m/s in 0.05 s");
+    // Damping by mass takes some.
+    assert!((0.9 * 0.49..0.5).contains(&gained));
 }
 
 #[test]

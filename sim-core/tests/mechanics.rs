@@ -4,7 +4,7 @@ mod common;
 
 use common::{WIDTH, stockinette, swatch};
 use glam::DVec3;
-use sim_core::{Body, Material, Pin, Scene, SettleGoal, Settled, SimError, Simulator};
+use sim_core::{Body, Material, Materials, Pin, Scene, SettleGoal, Settled, SimError, Simulator};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
@@ -15,7 +15,7 @@ fn undamped() -> Material {
 
 /// Mass-weighted sums over nodes: momentum and angular momentum about the centre of mass.
 fn momenta(simulator: &Simulator) -> (DVec3, DVec3, f64) {
-    let masses = simulator.model().node_masses(simulator.material());
+    let masses = simulator.model().node_masses(simulator.materials());
     let state = simulator.state();
     let sum = |of: &dyn Fn(usize) -> DVec3| (0..masses.len()).map(|i| masses[i] * of(i)).sum::<DVec3>();
     let mass: f64 = masses.iter().sum();
@@ -65,18 +65,18 @@ fn energy_of_a_free_swing_does_not_grow() {
     // From a relaxed shape: the first steps from the laid one are far from any linearisation.
     let mut relaxed = common::free(&net);
     common::run(&mut relaxed, 0.3);
-    let material = undamped();
+    let materials = Materials::from(undamped());
     let node = 0;
     let pin = Pin { node: 0, target: relaxed.state().position[node], stiffness: 10.0 };
     let scene = Scene { pins: vec![pin], ..Scene::default() };
     let mut simulator = relaxed;
-    simulator.set_material(material.clone()).unwrap();
+    simulator.set_materials(materials.clone()).unwrap();
     simulator.set_scene(scene).unwrap();
     let energy = |s: &Simulator| {
-        let masses = s.model().node_masses(&material);
+        let masses = s.model().node_masses(&materials);
         let weight: f64 = masses.iter().zip(&s.state().position).map(|(m, x)| 9.81 * m * x.y).sum();
         let held = 0.5 * 10.0 * s.state().position[node].distance_squared(pin.target);
-        s.kinetic_energy() + s.model().elastic_energy(&material, s.state()) + weight + held
+        s.kinetic_energy() + s.model().elastic_energy(&materials, s.state()) + weight + held
     };
     let (start, mut before) = (energy(&simulator), 0.0);
     let mut largest_kinetic: f64 = 0.0;
@@ -140,6 +140,8 @@ fn bad_input_is_refused() {
     assert!(matches!(with_state(&|s| s.position[7].y = f64::NAN), Some(SimError::StateNotFinite)));
     assert!(matches!(with_state(&|s| s.position.truncate(3)), Some(SimError::StateShape { .. })));
     assert!(matches!(with_state(&|s| s.sliding[5] = s.sliding[6]), Some(SimError::StateWithoutYarn(5))));
+    let coincident = with_state(&|s| s.position[9] = s.position[8]).unwrap().to_string();
+    assert_eq!(coincident, "nodes 8 and 9 follow each other on a yarn and are at the same place");
     let mut broken = (*net).clone();
     let same = broken.visits[6].u;
     Arc::make_mut(&mut broken.visits)[5].u = same;
@@ -161,8 +163,8 @@ fn absurd_forces_are_rejected_and_leave_the_state_as_it_was() {
     }
     let no_node = Pin { node: 1_000_000, target: DVec3::ZERO, stiffness: 1.0 };
     assert!(simulator.set_scene(Scene { pins: vec![no_node], ..Scene::empty() }).is_err());
-    let absurd = Material { density: f64::INFINITY, ..simulator.material().clone() };
-    assert!(simulator.set_material(absurd).is_err());
+    let absurd = Material { density: f64::INFINITY, ..simulator.materials().base.clone() };
+    assert!(simulator.set_materials(absurd).is_err());
     simulator.set_scene(Scene::empty()).unwrap();
     simulator.step().unwrap();
 }

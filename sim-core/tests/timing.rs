@@ -22,7 +22,7 @@ fn steps_of_stockinette() {
         }
         let step = start.elapsed() / steps;
         let start = Instant::now();
-        sim_core::curves(&net, simulator.state(), simulator.material().drawn_radius);
+        sim_core::curves(&net, simulator.state(), simulator.materials());
         println!("{name}: setup {setup:.0?}, step {step:.1?}, curves {:.1?}", start.elapsed());
         println!("  {:?}", simulator.facts());
     }

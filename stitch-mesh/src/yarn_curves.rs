@@ -14,8 +14,8 @@ pub struct YarnCurve {
     pub points: Vec<Vec3>,
     /// Whether the last point is joined to the first.
     pub closed: bool,
-    /// Radius of the yarn as drawn [m].
-    pub radius: f32,
+    /// Radius of the yarn as drawn from each control point to the next, [point_count] [m].
+    pub radii: Vec<f32>,
     /// Colour of the yarn from each control point to the next, [point_count].
     pub dyes: Vec<Dye>,
 }
@@ -28,9 +28,14 @@ pub struct YarnCurves {
 }
 
 impl YarnCurve {
-    /// A yarn of one colour.
+    /// A yarn of one colour and thickness.
     pub fn new(points: Vec<Vec3>, closed: bool, radius: f32, dye: Dye) -> Self {
-        Self { dyes: vec![dye; points.len()], points, closed, radius }
+        Self { radii: vec![radius; points.len()], dyes: vec![dye; points.len()], points, closed }
+    }
+
+    /// The radius at its thickest place [m].
+    pub fn greatest_radius(&self) -> f32 {
+        self.radii.iter().copied().fold(0.0, f32::max)
     }
 
     /// Number of spans: pieces of curve between neighbouring control points.

@@ -291,7 +291,7 @@ fn saved(project: &Project) -> Vec<u8> {
 /// Whether two projects are the same, by all that an edit of stitches can change.
 fn same(a: &Project, b: &Project) -> bool {
     let stitches = |p: &Project| p.fabric().unwrap().stitches.clone();
-    stitches(a) == stitches(b) && a.counts == b.counts && a.scene == b.scene && a.material == b.material
+    stitches(a) == stitches(b) && a.counts == b.counts && a.scene == b.scene && a.materials == b.materials
 }
 
 /// Does the edits and takes them back. Returns how many could be done.

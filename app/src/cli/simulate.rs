@@ -73,7 +73,7 @@ pub fn simulate(
         bail!("cannot simulate {seconds} s: --seconds goes up to 3600");
     }
     if let Some(name) = scene {
-        project.scene = scenes::scene(name, project.fabric()?, &project.material)?;
+        project.scene = scenes::scene(name, project.fabric()?, &project.materials.base)?;
     }
     let mut simulator = start(&project, &project.scene)?;
     let camera =
@@ -104,7 +104,7 @@ pub fn simulate(
 fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
     let fabric = project.fabric()?;
     let state = (*fabric.state()).clone();
-    Ok(Simulator::new(&fabric.net, project.material.clone(), scene.clone(), state)?)
+    Ok(Simulator::new(&fabric.net, project.materials.clone(), scene.clone(), state)?)
 }
 
 fn store(project: &mut Project, simulator: &Simulator) {

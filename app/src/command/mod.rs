@@ -11,6 +11,7 @@ mod script;
 mod stitches;
 mod structure;
 mod tessellation;
+mod yarns;
 
 pub use script::{read_script, write_script};
 
@@ -20,7 +21,7 @@ use anyhow::{Context, Result, bail};
 use patterns::tile::Layout;
 use serde::{Deserialize, Serialize};
 use sim_core::mesh_relax::RelaxParams;
-use sim_core::{Material, Scene};
+use sim_core::{Material, Preset, Scene};
 use stitch_mesh::cable::Cable;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::edit::{End, Survivors, Way};
@@ -221,10 +222,26 @@ pub enum Command {
         /// Where to.
         to: Way,
     },
-    /// Changes the yarn.
+    /// Changes the material of the yarn, or of yarn of one colour.
     SetMaterial {
+        /// The colour, `#rrggbb`; all yarn that has no material of its own if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        color: Option<Dye>,
         /// All its parameters.
         material: Material,
+    },
+    /// Takes a material by name, as it is for stitches of this size.
+    UsePreset {
+        /// The colour, `#rrggbb`; all yarn that has no material of its own if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        color: Option<Dye>,
+        /// The name.
+        preset: Preset,
+    },
+    /// Makes yarn of one colour like the rest again.
+    ClearMaterial {
+        /// The colour, `#rrggbb`.
+        color: Dye,
     },
     /// Changes what surrounds the fabric.
     SetScene {
@@ -314,10 +331,9 @@ impl Command {
             Self::ShiftWale { edge, end, to } => {
                 survivors = structure::shift_wale(project, *edge, *end, *to)?;
             }
-            Self::SetMaterial { material } => {
-                material.validate()?;
-                project.material = material.clone();
-            }
+            Self::SetMaterial { color, material } => yarns::set(project, *color, material.clone())?,
+            Self::UsePreset { color, preset } => yarns::use_preset(project, *color, *preset)?,
+            Self::ClearMaterial { color } => yarns::clear(project, *color)?,
             Self::SetScene { scene } => {
                 scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
                 project.scene = scene.clone();

@@ -4,7 +4,6 @@ use super::find_edge;
 use crate::project::{Fabric, Project};
 use crate::relax::mean_width;
 use anyhow::{Result, bail};
-use sim_core::Material;
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
 use stitch_mesh::ids::EdgeId;
 use stitch_mesh::tessellate::tessellate as cut;
@@ -32,7 +31,7 @@ pub(super) fn tessellate(project: &mut Project, width_mm: Option<f64>) -> Result
     }
     if project.fabric.is_none() || project.size != size {
         // Yarn as thick as the stitches came out: on short edges they are narrower than was asked for.
-        project.material = Material::for_loop_width(mean_width(&stitches));
+        project.materials = project.materials.refitted(mean_width(&stitches));
     }
     project.size = size;
     project.counts = Some(counts);

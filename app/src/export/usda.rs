@@ -28,16 +28,16 @@ fn prim(text: &mut String, name: &str, wrap: &str, curves: &[&YarnCurve]) {
     let all = || curves.iter().flat_map(|c| c.points.iter());
     let low = all().fold(glam::Vec3::INFINITY, |a, p| a.min(*p));
     let high = all().fold(glam::Vec3::NEG_INFINITY, |a, p| a.max(*p));
-    let radius = curves.iter().map(|c| c.radius).fold(0.0, f32::max);
+    let radius = curves.iter().map(|c| c.greatest_radius()).fold(0.0, f32::max);
+    let widths = list(curves.iter().flat_map(|c| &c.radii).map(|r| (2.0 * r).to_string()).collect());
     let extent = list(vec![tuple((low - radius).to_array()), tuple((high + radius).to_array())]);
     let _ = write!(
         text,
         "    def BasisCurves \"{name}\"\n    {{\n        uniform token type = \"cubic\"\n        uniform token basis = \
          \"catmullRom\"\n        uniform token wrap = \"{wrap}\"\n        int[] curveVertexCounts = [{counts}]\n        \
-         point3f[] points = [{points}]\n        float3[] extent = [{extent}]\n        float[] widths = [{}] (\n            \
-         interpolation = \"constant\"\n        )\n        color3f[] primvars:displayColor = [{colors}] (\n            \
-         interpolation = \"vertex\"\n        )\n    }}\n",
-        2.0 * radius
+         point3f[] points = [{points}]\n        float3[] extent = [{extent}]\n        float[] widths = [{widths}] (\n            \
+         interpolation = \"vertex\"\n        )\n        color3f[] primvars:displayColor = [{colors}] (\n            \
+         interpolation = \"vertex\"\n        )\n    }}\n"
     );
 }
 
@@ -51,7 +51,9 @@ mod tests {
         let text = encode(&sample());
         assert!(text.contains("curveVertexCounts = [5]") && text.contains("curveVertexCounts = [4]"));
         assert!(text.contains("wrap = \"pinned\"") && text.contains("wrap = \"periodic\""));
-        assert!(text.contains("widths = [0.004]") && text.contains("(0.2, 0.04, -0.25)"));
+        assert!(
+            text.contains("widths = [0.004, 0.004, 0.004, 0.004]") && text.contains("(0.2, 0.04, -0.25)")
+        );
         assert_eq!(text.matches('{').count(), text.matches('}').count());
     }
 }

@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use glam::Vec3;
 use image::RgbaImage;
 use render::{Bounds, Camera, Drawing, Gpu, NamedView, render_image};
-use sim_core::{Material, Simulator, curves};
+use sim_core::{Material, Materials, Simulator, curves};
 use std::sync::Arc;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::catalogue::GROUPS;
@@ -130,16 +130,17 @@ fn cables() -> Result<Vec<Swatch>> {
 pub(super) fn both_sides(gpu: &Gpu, swatch: &Swatch, side: u32) -> Result<[RgbaImage; 2]> {
     let stitches = &swatch.stitches;
     let net = Arc::new(lay(stitches));
-    let material = Material::for_loop_width(LOOP);
+    let materials = Materials::from(Material::for_loop_width(LOOP));
     // Pinned out on a board: stitches on all sides, cables above and below only, as they draw together.
     let is_cabled = !stitches.cables().is_empty();
     let state = net.laid_state();
-    let scene = pinned_out(stitches, (&net, &state), &material, |h| !(is_cabled && stitches.is_wale(h)));
-    let mut simulator = Simulator::new(&net, material.clone(), scene, state)?;
+    let scene =
+        pinned_out(stitches, (&net, &state), &materials.base, |h| !(is_cabled && stitches.is_wale(h)));
+    let mut simulator = Simulator::new(&net, materials.clone(), scene, state)?;
     while simulator.time_s() < TIME {
         simulator.step()?;
     }
-    let yarn = curves(&net, simulator.state(), material.drawn_radius);
+    let yarn = curves(&net, simulator.state(), &materials);
     let drawing = Drawing { yarn, ..Drawing::default() };
     let [low, high] = stitches.mesh().bounds().map(|p| p.as_vec3());
     // The border is cut off, unless it is what is shown.

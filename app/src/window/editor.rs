@@ -18,7 +18,7 @@ use crate::project::Project;
 use anyhow::Result;
 use glam::{DVec3, Vec3};
 use render::{Bounds, Camera, Faces, Lines, NamedView};
-use sim_core::{Material, Pin, Scene, SimCommand, SimThread, Snapshot};
+use sim_core::{Materials, Pin, Scene, SimCommand, SimThread, Snapshot};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -73,10 +73,10 @@ pub struct Editor {
     shown: Option<(u64, Stage)>,
     /// Whether the faces on the screen have other colours now.
     pub(super) recolour: bool,
-    /// The net that the simulation has, how often it had been placed, and material and scene.
+    /// The net that the simulation has, how often it had been placed, and materials and scene.
     loaded: Option<Arc<YarnNet>>,
     placed: u64,
-    simulated: Option<(Material, Scene)>,
+    simulated: Option<(Materials, Scene)>,
     generation: u64,
     framed: bool,
     pub(super) error: Option<String>,
@@ -279,7 +279,7 @@ impl Editor {
         }
     }
 
-    /// Hands the yarn to the simulation where the net, the scene or the material is another one than before. As long as
+    /// Hands the yarn to the simulation where the net, the scene or the materials are others than before. As long as
     /// nobody looks at it or lets it move, it need not be ready.
     fn load_yarn(&mut self) {
         if self.stage != Stage::Yarn && !self.playing {
@@ -293,13 +293,13 @@ impl Editor {
             }
             return;
         };
-        let wants = (project.material.clone(), project.scene.clone());
+        let wants = (project.materials.clone(), project.scene.clone());
         let in_place = self.placed == self.view.placed
             && self.loaded.as_ref().is_some_and(|net| Arc::ptr_eq(net, &fabric.net));
         if !in_place {
             self.generation = self.sim.send(SimCommand::Load {
                 net: fabric.net.clone(),
-                material: wants.0.clone(),
+                materials: wants.0.clone(),
                 scene: wants.1.clone(),
                 state: fabric.state.clone(),
             });
@@ -309,7 +309,7 @@ impl Editor {
                 self.sim.send(SimCommand::Play);
             }
         } else if self.simulated.as_ref() != Some(&wants) {
-            self.sim.send(SimCommand::SetMaterial(wants.0.clone()));
+            self.sim.send(SimCommand::SetMaterials(wants.0.clone()));
             self.sim.send(SimCommand::SetScene(wants.1.clone()));
         }
         self.simulated = Some(wants);

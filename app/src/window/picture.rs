@@ -139,7 +139,7 @@ impl Editor {
         let mesh = surface.mesh();
         let mut segments = Vec::new();
         let lift = match self.shown_stage() {
-            Stage::Yarn => (LIFT * self.view.project.material.drawn_radius) as f32,
+            Stage::Yarn => (LIFT * self.view.project.materials.base.drawn_radius) as f32,
             _ => 0.0,
         };
         let mut mark = |half: stitch_mesh::ids::HalfEdgeId, color, width| {

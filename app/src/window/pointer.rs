@@ -221,7 +221,7 @@ fn grab(editor: &mut Editor) {
         && let Some((_, at)) = editor.under
         && let Some((node, position)) = editor.nearest_node(at.as_dvec3())
     {
-        let material = &editor.view.project.material;
+        let material = &editor.view.project.materials.base;
         let stiffness = GRIP * material.bend_stiffness() / material.radius.powi(3);
         editor.pull(Some(Pin { node, target: position, stiffness }));
         if !editor.playing {

@@ -26,8 +26,8 @@ pub(crate) struct ControlPoint {
     pub arc: f32,
     /// Unit reference normal, at a right angle to the tangent.
     pub normal: Vec3,
-    /// Index of the curve, and [`END`].
-    pub curve: u32,
+    /// Index of the stretch of one thickness that begins or goes on here, and [`END`].
+    pub stretch: u32,
 }
 
 /// Takes a normal of the unit tangent `a` to the unit tangent `b` by the smallest rotation.
@@ -47,17 +47,20 @@ fn tangent([p0, p1, p2]: [Vec3; 3]) -> Vec3 {
 }
 
 /// Appends the points of a curve, with one more before its start and two after its end (three if it is closed: its first
-/// point again), so that every span, and the end of the last, finds its four. Returns the roll a span [rad].
-pub(crate) fn lay_out(curve: &YarnCurve, index: u32, out: &mut Vec<ControlPoint>) -> f32 {
+/// point again), so that every span, and the end of the last, finds its four. The stretches of one thickness are counted from
+/// `first_stretch`. Returns the roll a span [rad].
+pub(crate) fn lay_out(curve: &YarnCurve, first_stretch: u32, out: &mut Vec<ControlPoint>) -> f32 {
     let spans = curve.span_count();
     if spans == 0 || curve.points.len() < 2 {
         return 0.0;
     }
     let first = out.len();
     let at = |i: usize| curve.points[i % curve.points.len()];
+    let mut stretch = first_stretch;
+    let radius = |i: usize| curve.radii[i % curve.radii.len()];
     let [before, ..] = curve.span(0);
     let [.., after] = curve.span(spans - 1);
-    out.push(ControlPoint { position: before, arc: 0.0, normal: Vec3::ZERO, curve: index });
+    out.push(ControlPoint { position: before, arc: 0.0, normal: Vec3::ZERO, stretch });
 
     let mut arc = 0.0;
     let mut direction = (at(1) - at(0)).try_normalize().unwrap_or(Vec3::X);
@@ -72,12 +75,16 @@ pub(crate) fn lay_out(curve: &YarnCurve, index: u32, out: &mut Vec<ControlPoint>
         if i == 0 {
             start_direction = direction;
         } else {
-            arc += at(i).distance(at(i - 1)) / (2.0 * curve.radius);
+            arc += at(i).distance(at(i - 1)) / (2.0 * radius(i - 1));
+            stretch += u32::from(radius(i) != radius(i - 1));
+        }
+        if i == curve.points.len() {
+            stretch = first_stretch; // around once
         }
         let end = if !curve.closed && (i == 0 || i == spans) { END } else { 0 };
-        out.push(ControlPoint { position: at(i), arc, normal, curve: index | end });
+        out.push(ControlPoint { position: at(i), arc, normal, stretch: stretch | end });
     }
-    let beyond = ControlPoint { position: after, arc, normal: Vec3::ZERO, curve: index };
+    let beyond = ControlPoint { position: after, arc, normal: Vec3::ZERO, stretch };
     out.extend([beyond; 2]);
     if curve.closed { close(&mut out[first + 1..=first + 1 + spans], start_direction) } else { 0.0 }
 }
@@ -158,7 +165,7 @@ mod tests {
         let plies = last.arc / (PITCH / PLIES);
         assert!((plies - plies.round()).abs() < 1e-3);
         assert!(roll.abs() > 1e-4, "the curve was meant to turn its frame");
-        assert!(out.iter().all(|p| p.curve == 3));
+        assert!(out.iter().all(|p| p.stretch == 3));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Tests that both solvers do the same.
 
 use super::gradients::{self, NotConverged};
+use super::tail::Link;
 use super::{Incomplete, Solver};
 use crate::friction::Anchors;
 use crate::material::Material;
@@ -8,7 +9,7 @@ use crate::model::Model;
 use crate::scene::{Pin, Scene};
 use crate::step::{Stepper, Stuck};
 use crate::testing::fabrics::fabrics;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::sync::Arc;
 use stitch_mesh::{lay::lay, stitch_mesh::StitchMesh};
 
@@ -24,7 +25,6 @@ const STEP: f64 = 5e-3;
 /// A fabric that hangs by one node, after a few steps.
 struct Hanging {
     stepper: Stepper,
-    material: Material,
     scene: Scene,
     now: Stuck,
 }
@@ -40,14 +40,14 @@ impl Hanging {
         let pin = Pin { node: 0, target: net.nodes[0].position, stiffness: 10.0 };
         let scene = Scene { pins: vec![pin], time_step: STEP, ..Scene::default() };
         let model = Model::new(net).unwrap();
-        let stepper = Stepper::new(model, &material).unwrap();
+        let stepper = Stepper::new(model, &material.into()).unwrap();
         let anchors = Anchors::at(&stepper.stacks, &state.sliding);
-        let mut hanging = Self { stepper, material, scene, now: Stuck { state, anchors } };
+        let mut hanging = Self { stepper, scene, now: Stuck { state, anchors } };
         hanging.stepper.solver = hanging.direct();
         // From the laid shape only small steps go well at first.
         let mut h = 0.5 * STEP;
         while h <= STEP {
-            match hanging.stepper.step(&hanging.now, &hanging.material, &hanging.scene, h) {
+            match hanging.stepper.step(&hanging.now, &hanging.scene, h) {
                 Ok(next) => (hanging.now, h) = (next, 1.1 * h),
                 Err(_) => h *= 0.5,
             }
@@ -56,7 +56,7 @@ impl Hanging {
     }
 
     fn step(&mut self) -> Stuck {
-        self.stepper.step(&self.now, &self.material, &self.scene, STEP).unwrap()
+        self.stepper.step(&self.now, &self.scene, STEP).unwrap()
     }
 
     fn direct(&self) -> Solver {
@@ -72,7 +72,7 @@ impl Hanging {
         let Stepper { model, system, .. } = &self.stepper;
         let nodes = &model.start[..model.net.nodes.len()];
         let mut x = vec![0.0; model.dof_count()];
-        gradients::solve(&system.matrix, preconditioner, nodes, &system.rhs, &mut x)
+        gradients::solve(&system.matrix, preconditioner, nodes, &system.rhs, &mut x, super::MOST_ITERATIONS)
     }
 }
 
@@ -97,6 +97,43 @@ fn both_solvers_take_the_same_step() {
         assert!(iterations < ENOUGH, "{name}: {iterations} iterations");
         assert!(difference < CLOSE, "{name}: {difference:e}");
     }
+}
+
+#[test]
+fn both_solve_a_tail_and_notice_where_it_lacks() {
+    let [(_, stitches), ..] = fabrics();
+    let mut hanging = Hanging::new(&stitches);
+    hanging.step();
+    let Stepper { model, system, .. } = &mut hanging.stepper;
+    // Nodes that have nothing to do with each other, tied as stiffly as a contact of layers is.
+    let count = model.net.nodes.len();
+    let stiff = 1e-4 * DMat3::IDENTITY;
+    for k in 0..10 {
+        let nodes = [3 * k, count - 1 - 5 * k];
+        let start = nodes.map(|n| model.start[n]);
+        for first in start {
+            (0..3).for_each(|i| system.matrix.add_diagonal(first as usize + i, stiff.col(i)[i]));
+        }
+        system.matrix.tail.push(Link { start, block: stiff });
+    }
+    let solve = |mut solver: Solver, matrix: &_| {
+        let mut x = vec![0.0; system.rhs.len()];
+        solver.solve(model, matrix, &system.rhs, &mut x).unwrap();
+        x
+    };
+    let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let apart = |a: &[f64], b: &[f64]| {
+        let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        largest(&difference) / largest(a)
+    };
+    let matrix = &system.matrix;
+    let direct = solve(Solver::direct(model, matrix).unwrap(), matrix);
+    let iterative = solve(Solver::iterative(model, matrix), matrix);
+    println!("{:.1e}", apart(&direct, &iterative));
+    assert!(apart(&direct, &iterative) < CLOSE);
+    let mut cut = matrix.clone();
+    cut.tail.pop();
+    assert!(apart(&direct, &solve(Solver::direct(model, matrix).unwrap(), &cut)) > CLOSE);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Sparse Cholesky factorisation, its symbolic part kept for the life of a net.
 
+use super::gradients::Preconditioner;
 use super::matrix::BlockMatrix;
 use super::ordering::elimination_order;
 use crate::model::Model;
@@ -20,6 +21,9 @@ pub enum SolveError {
     /// Memory for the factors ran out.
     #[error("not enough memory to factorise {0} unknowns")]
     OutOfMemory(usize),
+    /// Conjugate gradients did not get near enough to the solution.
+    #[error("the system did not converge")]
+    NotConverged,
 }
 
 /// The factors of a matrix and the memory to make them in.
@@ -54,8 +58,8 @@ impl Cholesky {
         Ok(Self { symbolic, factor, scratch })
     }
 
-    /// Replaces `rhs` by the solution x of `matrix` x = `rhs`.
-    pub fn solve(&mut self, matrix: &BlockMatrix, rhs: &mut [f64]) -> Result<(), SolveError> {
+    /// Makes the factors of `matrix`, its tail left out.
+    pub fn factorise(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
         let system = SparseColMatRef::new(pattern(matrix), matrix.value.as_slice());
         let stack = MemStack::new(&mut self.scratch);
         self.symbolic
@@ -69,14 +73,20 @@ impl Cholesky {
                 Default::default(),
             )
             .map_err(|_| SolveError::NotPositiveDefinite)?;
-        let count = rhs.len();
+        Ok(())
+    }
+}
+
+impl Preconditioner for Cholesky {
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        z.copy_from_slice(r);
+        let count = z.len();
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(rhs, count, 1),
+            MatMut::from_column_major_slice_mut(z, count, 1),
             Par::Seq,
             MemStack::new(&mut self.scratch),
         );
-        Ok(())
     }
 }
 

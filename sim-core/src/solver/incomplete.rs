@@ -12,6 +12,7 @@
 //! to stiffnesses. Dropping can leave a block that is not positive definite; then a part of the diagonal is added.
 //! Parts run beside each other, and what they do to the joint is added up in their order.
 
+use super::gradients::Preconditioner;
 use super::matrix::BlockMatrix;
 use super::pattern::{Group, Part, Pattern};
 use crate::model::Model;
@@ -88,9 +89,10 @@ impl Incomplete {
         }
         eliminate(pattern, last, joint, &mut [], shift)
     }
+}
 
-    /// Sets `z` to the solution of M z = `r`, M being the approximation.
-    pub fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+impl Preconditioner for Incomplete {
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
         let Self { pattern, factor, scale, work } = self;
         for ((place, r), scale) in pattern.place.iter().zip(r).zip(scale.iter()) {
             work[*place as usize] = (r * scale) as f32;

@@ -1,10 +1,11 @@
-//! A sparse symmetric matrix with a fixed pattern of node blocks.
+//! A sparse symmetric matrix with a fixed pattern of node blocks, and a tail without one.
 //!
 //! Only the lower triangle is stored, by columns, as the factorisation wants it. Node blocks are full, so the place of an
 //! entry follows from the place of its block: in the first column of node J the rows of the blocks I ≥ J follow each other,
 //! and each further column of J begins one row later. An entry (i of I, j of J) therefore lies at
 //! `column(J, j) + block(I, J) + i − j`.
 
+use super::tail::Link;
 use crate::model::Model;
 
 /// The lower triangle of a symmetric matrix.
@@ -18,6 +19,8 @@ pub(crate) struct BlockMatrix {
     pub row: Vec<u32>,
     /// Each entry.
     pub value: Vec<f64>,
+    /// Blocks outside of the pattern.
+    pub tail: Vec<Link>,
     /// Blocks under the diagonal of each node, first of them, [node_count + 1].
     first_block: Vec<u32>,
     /// Node of each block's rows, ascending within a column.
@@ -34,6 +37,7 @@ impl BlockMatrix {
             column: vec![0],
             row: Vec::new(),
             value: Vec::new(),
+            tail: Vec::new(),
             first_block: vec![0],
             block_node: Vec::new(),
             block_offset: Vec::new(),
@@ -93,5 +97,6 @@ impl BlockMatrix {
     /// Sets every entry to zero.
     pub fn clear(&mut self) {
         self.value.fill(0.0);
+        self.tail.clear();
     }
 }

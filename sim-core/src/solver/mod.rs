@@ -26,7 +26,7 @@
 #[cfg(test)]
 mod agreement;
 pub(crate) mod cholesky;
-mod gradients;
+pub(crate) mod gradients;
 mod groups;
 mod incomplete;
 pub(crate) mod matrix;
@@ -34,9 +34,11 @@ mod ordering;
 mod parts;
 mod pattern;
 mod product;
+pub(crate) mod tail;
 
 use crate::model::Model;
 use cholesky::{Cholesky, SolveError};
+use gradients::Preconditioner;
 use incomplete::Incomplete;
 use matrix::BlockMatrix;
 
@@ -46,6 +48,12 @@ const CROSSOVER: usize = 3000;
 /// Systems solved directly after one that conjugate gradients failed on: what made that one hard is still there in the next
 /// few, and trying in vain costs as much as solving.
 const DIRECT_AFTER_FAILURE: u32 = 8;
+
+/// Iterations after which to give up; by then a direct solution would have been faster.
+const MOST_ITERATIONS: usize = 80;
+
+/// Iterations after which to give up with a complete factorisation, which leaves only the tail to them.
+const MOST_ITERATIONS_OF_TAIL: usize = 400;
 
 /// Solves the systems of one net.
 pub(crate) struct Solver {
@@ -85,12 +93,12 @@ impl Solver {
         rhs: &[f64],
         x: &mut [f64],
     ) -> Result<(), SolveError> {
+        let nodes = &model.start[..model.net.nodes.len()];
         if self.direct_for > 0 {
             self.direct_for -= 1;
         } else if let Some(preconditioner) = &mut self.preconditioner {
-            let nodes = &model.start[..model.net.nodes.len()];
             if preconditioner.factorise(matrix).is_ok()
-                && gradients::solve(matrix, preconditioner, nodes, rhs, x).is_ok()
+                && gradients::solve(matrix, preconditioner, nodes, rhs, x, MOST_ITERATIONS).is_ok()
             {
                 return Ok(());
             }
@@ -101,7 +109,13 @@ impl Solver {
             Some(direct) => direct,
             none => none.insert(Cholesky::new(model, matrix)?),
         };
-        x.copy_from_slice(rhs);
-        direct.solve(matrix, x)
+        direct.factorise(matrix)?;
+        if matrix.tail.is_empty() {
+            direct.apply(rhs, x);
+            return Ok(());
+        }
+        gradients::solve(matrix, direct, nodes, rhs, x, MOST_ITERATIONS_OF_TAIL)
+            .map(|_| ())
+            .map_err(|_| SolveError::NotConverged)
     }
 }

@@ -48,5 +48,6 @@ impl Product {
         for (first, part) in &self.chunks {
             y[*first..].iter_mut().zip(part).for_each(|(y, part)| *y += part);
         }
+        matrix.tail.iter().for_each(|link| link.add(x, y));
     }
 }

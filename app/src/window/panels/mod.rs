@@ -5,6 +5,7 @@ mod evenness;
 mod history;
 pub mod left;
 pub mod library;
+mod material;
 mod palette;
 mod patterns;
 mod problems;
@@ -32,7 +33,9 @@ pub struct State {
     pub width_mm: f64,
     /// Width over height of the viewport.
     pub aspect: f32,
-    /// The yarn while a slider moves.
+    /// The colour of the yarn whose material is shown; none for all that have none of their own.
+    pub yarn: Option<Dye>,
+    /// Its material while a number is dragged.
     pub material: Option<Material>,
     /// Radius of the selecting brush [px].
     pub brush_radius: f32,
@@ -63,6 +66,7 @@ impl State {
             path: view.path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(),
             width_mm: 1e3 * view.project.size.width,
             aspect: 4.0 / 3.0,
+            yarn: None,
             material: None,
             width_changed: view.project.fabric.is_none(),
             dye: Dye([0x00, 0x72, 0xb2]),
