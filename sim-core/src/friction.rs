@@ -138,6 +138,18 @@ impl Anchors {
         anchors
     }
 
+    /// These anchors on a net made of this one: `was` tells which visit each one was and by how much it was moved. What is new
+    /// sticks where it is, at `sliding`.
+    pub fn carried(&self, stacks: &[Stack], was: &[Option<(VisitId, f64)>], sliding: &[f64]) -> Self {
+        let mut anchors = Self::at(stacks, sliding);
+        for (anchor, was) in anchors.own.iter_mut().zip(was) {
+            if let Some((visit, shift)) = was {
+                *anchor = self.own[visit.index()] + shift;
+            }
+        }
+        anchors
+    }
+
     /// Moves the anchors with yarn that is taken in: visit by visit by `shift` [m].
     pub fn shift(&mut self, stacks: &[Stack], shift: impl Fn(usize) -> f64) {
         self.own.iter_mut().enumerate().for_each(|(v, anchor)| *anchor += shift(v));

@@ -41,6 +41,7 @@ mod simulator;
 mod solver;
 mod step;
 mod stretch;
+mod surgery;
 mod take_in;
 mod thread;
 mod wrap;
@@ -58,6 +59,7 @@ pub use scene::{Pin, Scene, SceneError};
 pub use simulator::{SettleGoal, SettleProgress, Settled, SimError, Simulator, StepReport};
 pub use solver::cholesky::SolveError;
 pub use step::Rejection;
+pub use surgery::{Operation, Surgery, SurgeryError};
 pub use thread::{SimCommand, SimThread, Snapshot};
 
 #[cfg(test)]

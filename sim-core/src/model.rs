@@ -25,9 +25,10 @@ use crate::material::Material;
 use crate::materials::Materials;
 use crate::parallel::Parallel;
 use crate::stretch::Stretch;
+use crate::surgery::slip;
 use crate::wrap::Wrap;
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 use stitch_mesh::dye::Dye;
@@ -123,7 +124,7 @@ pub(crate) struct SegmentTerm {
     /// Whether it lies in a stitch contact.
     pub in_contact: bool,
     /// How close its ends may come along the yarn, over the parallel distance: half at nodes where yarns only cross, which
-    /// lie closer.
+    /// lie closer; zero next to a loose node, up to which it slides.
     pub closeness: f64,
 }
 
@@ -353,6 +354,7 @@ fn dyes(net: &YarnNet) -> (Vec<Dye>, Vec<u32>) {
 /// Segments of all yarns, each known to lie in a stitch contact or not.
 fn segments(net: &YarnNet, dye_of: &[u32]) -> Result<Vec<SegmentTerm>, NetError> {
     let mut terms = Vec::with_capacity(net.visits.len());
+    let unheld: HashSet<[VisitId; 2]> = slip::unheld(net).collect();
     for segment in net.segments() {
         let [a, b] = segment.ends;
         let rest = net.visits[b.index()].u + segment.wrap - net.visits[a.index()].u;
@@ -361,8 +363,14 @@ fn segments(net: &YarnNet, dye_of: &[u32]) -> Result<Vec<SegmentTerm>, NetError>
             return Err(NetError::NoYarn(a, b, rest));
         }
         let stencil = Stencil::new(net, segment.ends, [0.0, segment.wrap]);
-        let crosses = stencil.nodes.iter().any(|n| net.nodes[n.index()].kind == NodeKind::Crossing);
-        let closeness = if crosses { 0.5 } else { 1.0 };
+        let touches = |kind| stencil.nodes.iter().any(|n| net.nodes[n.index()].kind == kind);
+        let closeness = if touches(NodeKind::Loose) || unheld.contains(&segment.ends) {
+            0.0
+        } else if touches(NodeKind::Crossing) {
+            0.5
+        } else {
+            1.0
+        };
         let dye = dye_of[a.index()];
         terms.push(SegmentTerm { stencil, dye, rest, in_contact: false, closeness });
     }

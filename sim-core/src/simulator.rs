@@ -10,6 +10,8 @@ use crate::noise::unit_hash;
 use crate::scene::{Scene, SceneError};
 use crate::solver::cholesky::SolveError;
 use crate::step::{Rejection, Stepper, Stuck};
+use crate::surgery::slip::slipped;
+use crate::surgery::{self, Operation, Surgery, SurgeryError};
 use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -62,6 +64,9 @@ pub enum SimError {
     /// The two ends of a segment are at the same place, so that it has no direction.
     #[error("nodes {} and {} follow each other on a yarn and are at the same place", .0[0], .0[1])]
     CoincidentNodes([NodeId; 2]),
+    /// The operation.
+    #[error(transparent)]
+    Surgery(#[from] SurgeryError),
     /// The solver could not be set up.
     #[error(transparent)]
     Solver(#[from] SolveError),
@@ -127,6 +132,7 @@ pub struct Simulator {
     time: f64,
     steps: u64,
     rejected: u64,
+    surgery: Surgery,
 }
 
 impl Simulator {
@@ -161,6 +167,7 @@ impl Simulator {
             time: 0.0,
             steps: 0,
             rejected: 0,
+            surgery: Surgery::default(),
         })
     }
 
@@ -180,6 +187,9 @@ impl Simulator {
                     self.time += self.step;
                     self.steps += 1;
                     self.step = self.scene.time_step.min(2.0 * self.step);
+                    while let Some(operation) = slipped(self.net(), self.state(), &self.materials) {
+                        self.operate(operation)?;
+                    }
                     return Ok(report);
                 }
                 Err(cause) => {
@@ -195,6 +205,32 @@ impl Simulator {
                 }
             }
         }
+    }
+
+    /// Changes the net while it is simulated. Pins on nodes that go are dropped. Nothing has changed after an error.
+    pub fn operate(&mut self, operation: Operation) -> Result<(), SimError> {
+        let done = surgery::operate(self.net(), self.state(), &operation)?;
+        let mut stepper = Stepper::new(Model::new(Arc::new(done.net))?, &self.materials)?;
+        check_state(&stepper.model, &done.state)?;
+        let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
+        if self.surgery.operations.is_empty() {
+            self.surgery.taken_in = self.state().taken_in;
+        }
+        self.surgery.operations.push(operation);
+        std::mem::swap(&mut self.stepper, &mut stepper);
+        self.take_in = TakeIn::default();
+        self.now = Stuck { state: done.state, anchors };
+        self.scene.pins.retain_mut(|pin| {
+            let node = done.node.get(pin.node as usize).copied().flatten();
+            pin.node = node.map_or(pin.node, |n| n.0);
+            node.is_some()
+        });
+        Ok(())
+    }
+
+    /// What has been done to the net, and has happened to it, since this simulation began.
+    pub fn surgery(&self) -> &Surgery {
+        &self.surgery
     }
 
     /// Steps until the fabric is as good as still, the time limit, or until `progress` breaks off.

@@ -8,6 +8,7 @@
 
 use crate::friction::{Anchors, Stack};
 use crate::model::Model;
+use std::sync::Arc;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// How long taking in takes [s].
@@ -63,6 +64,21 @@ impl TakeIn {
         for bend in &mut model.bends {
             shorten(&mut bend.stencil.turn, shorter(bend.stencil.visits[0]));
         }
+    }
+
+    /// The net with `part` of it taken in for good and no more to come; none if there is nothing to take in.
+    pub fn settle(&self, net: &YarnNet, part: f64) -> Option<YarnNet> {
+        if self.total.is_empty() {
+            return None;
+        }
+        let mut settled = YarnNet { taken_in: Vec::new(), ..net.clone() };
+        for (visit, total) in Arc::make_mut(&mut settled.visits).iter_mut().zip(&self.total) {
+            visit.u -= part * total;
+        }
+        for (yarn, total) in settled.yarns.iter_mut().zip(&self.of_yarn) {
+            yarn.period = yarn.period.map(|period| period - part * total);
+        }
+        Some(settled)
     }
 
     /// Takes in as much as a step of `h` [s] does, and moves the anchors of friction along.

@@ -35,6 +35,8 @@ pub enum NodeKind {
     Crossing,
     /// One yarn alone: a tail, a turn, a live loop.
     Free,
+    /// One yarn alone since another one has been cut or has slipped out, or the end of a cut.
+    Loose,
 }
 
 /// A contact node as it was laid.
