@@ -250,6 +250,15 @@ impl Model {
         Ok(Self { net, dyes, dye_of, segments, bends, wraps, start, sliding, neighbours })
     }
 
+    /// Lets the bends that are `new` to the yarn start in `state` without jamming, however sharp they are: it has not been
+    /// laid so, and would fly apart.
+    pub(crate) fn ease(&mut self, state: &YarnState, new: impl Fn([VisitId; 3]) -> bool) {
+        for bend in self.bends.iter_mut().filter(|b| new(b.stencil.visits)) {
+            let angle = Bend::angle(&bend.stencil.coordinates(state));
+            bend.jam_angle = bend.jam_angle.max(angle + JAM_MARGIN);
+        }
+    }
+
     /// Number of unknowns.
     pub fn dof_count(&self) -> usize {
         self.start[self.net.nodes.len()] as usize

@@ -17,6 +17,7 @@ use glam::DVec3;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stitch_mesh::ids::NodeId;
+use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
@@ -210,14 +211,21 @@ impl Simulator {
     /// Changes the net while it is simulated. Pins on nodes that go are dropped. Nothing has changed after an error.
     pub fn operate(&mut self, operation: Operation) -> Result<(), SimError> {
         let done = surgery::operate(self.net(), self.state(), &operation)?;
-        let mut stepper = Stepper::new(Model::new(Arc::new(done.net))?, &self.materials)?;
-        check_state(&stepper.model, &done.state)?;
+        let mut model = Model::new(Arc::new(done.net))?;
+        check_state(&model, &done.state)?;
+        let before = self.net();
+        model.ease(&done.state, |visits| {
+            let was = visits.map(|v| done.was[v.index()].map(|(old, _)| old));
+            let followed = |a: Option<VisitId>, b| a.is_some() && a.and_then(|a| before.next(a)) == b;
+            !(followed(was[0], was[1]) && followed(was[1], was[2]))
+        });
+        let stepper = Stepper::new(model, &self.materials)?;
         let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
         if self.surgery.operations.is_empty() {
             self.surgery.taken_in = self.state().taken_in;
         }
         self.surgery.operations.push(operation);
-        std::mem::swap(&mut self.stepper, &mut stepper);
+        self.stepper = stepper;
         self.take_in = TakeIn::default();
         self.now = Stuck { state: done.state, anchors };
         self.scene.pins.retain_mut(|pin| {

@@ -16,7 +16,7 @@
 //! | [`Operation::Cut`] | a segment is cut in its middle: an open yarn becomes two, a closed one is opened |
 //! | [`Operation::Release`] | visits leave their nodes; a node that nobody visits goes, and so does a yarn without a segment |
 //!
-//! A node that is left with one visit becomes [`NodeKind::Loose`]; a contact lasts while both ends of its new yarn and of one
+//! The end of a yarn that is released gets a node of its own. A node that is left with one visit becomes [`NodeKind::Loose`]; a contact lasts while both ends of its new yarn and of one
 //! old loop do. What was still to be taken in of a cable's legs stays as it is at the first operation.
 
 mod rebuild;
@@ -160,8 +160,17 @@ fn cut(net: &YarnNet, state: &YarnState, segment: VisitId) -> Result<Vec<Piece>,
 fn release(net: &YarnNet, state: &YarnState, visits: &[VisitId]) -> Vec<Piece> {
     let mut pieces: Vec<Piece> =
         (0..net.yarns.len()).map(|yarn| whole(net, state, YarnId::new(yarn))).collect();
+    let goes = |stop: &Stop| stop.visit().is_some_and(|v| visits.contains(&v));
     for piece in &mut pieces {
-        piece.stops.retain(|s| s.visit().is_none_or(|v| !visits.contains(&v)));
+        if piece.period.is_none() {
+            // An end needs a node to itself: in the stack of another yarn nothing would hold its sliding coordinate.
+            for place in [0, piece.stops.len() - 1] {
+                if goes(&piece.stops[place]) {
+                    piece.stops[place] = piece.stops[place].alone(net, state);
+                }
+            }
+        }
+        piece.stops.retain(|s| !goes(s));
     }
     pieces
 }

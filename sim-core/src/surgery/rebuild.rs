@@ -61,6 +61,18 @@ impl Stop {
         }
     }
 
+    /// The same place along the yarn on a node of its own.
+    pub fn alone(&self, net: &YarnNet, state: &YarnState) -> Self {
+        let Place::Old(visit, _) = self.place else { return self.clone() };
+        let node = net.visits[visit.index()].node.index();
+        let place = Place::End {
+            position: [net.nodes[node].position, state.position[node]],
+            velocity: state.velocity[node],
+            normal: net.nodes[node].normal,
+        };
+        Self { place, ..*self }
+    }
+
     /// The same further along.
     pub fn moved(mut self, by: f64) -> Self {
         self.u = self.u.map(|u| u + by);
