@@ -8,6 +8,7 @@ use crate::curves::curves;
 use crate::materials::Materials;
 use crate::scene::Scene;
 use crate::simulator::{SimError, Simulator};
+use crate::surgery::{Operation, Surgery};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -40,6 +41,8 @@ pub enum SimCommand {
     SetScene(Scene),
     /// Replace the materials.
     SetMaterials(Materials),
+    /// Change the net: cut a yarn.
+    Operate(Operation),
     /// Forget the net.
     Stop,
 }
@@ -51,6 +54,10 @@ pub struct Snapshot {
     pub generation: u64,
     /// The state; the one loaded, if that can't be simulated.
     pub state: YarnState,
+    /// The net, which is no longer the one loaded once yarn has been cut or has slipped out.
+    pub net: Arc<YarnNet>,
+    /// What has happened to it since the load.
+    pub surgery: Surgery,
     /// Its yarns, drawn with the radii of their materials; none where the state does not belong to the net.
     pub curves: YarnCurves,
     /// Simulated time since the load [s].
@@ -175,6 +182,7 @@ impl Worker {
                 run.materials = materials.clone();
                 run.set(|s| s.set_materials(materials));
             }
+            (SimCommand::Operate(operation), Some(run)) => run.set(|s| s.operate(operation)),
         }
     }
 
@@ -234,11 +242,14 @@ impl Run {
 
     fn snapshot(&self, generation: u64) -> Snapshot {
         let state = self.simulator.as_ref().map_or(&*self.loaded, Simulator::state);
-        let drawable = state.fits(&self.net) && state.is_finite();
+        let net = self.simulator.as_ref().map_or(&self.net, Simulator::net);
+        let drawable = state.fits(net) && state.is_finite();
         Snapshot {
             generation,
             state: state.clone(),
-            curves: if drawable { curves(&self.net, state, &self.materials) } else { YarnCurves::default() },
+            net: Arc::clone(net),
+            surgery: self.simulator.as_ref().map(|s| s.surgery().clone()).unwrap_or_default(),
+            curves: if drawable { curves(net, state, &self.materials) } else { YarnCurves::default() },
             time_s: self.simulator.as_ref().map_or(0.0, Simulator::time_s),
             playing: self.playing,
             error: self.error.clone(),
@@ -252,6 +263,7 @@ mod tests {
     use super::*;
     use crate::material::Material;
     use std::sync::mpsc::Receiver;
+    use stitch_mesh::ids::VisitId;
 
     /// A thread, and what its wake-ups arrive at.
     fn thread() -> (SimThread, Receiver<()>) {
@@ -294,6 +306,23 @@ mod tests {
         wait(&thread, &wakes, |s| !s.playing);
         assert_eq!(load(&thread, |_| {}), 2);
         wait(&thread, &wakes, |s| s.generation == 2 && s.time_s == 0.0);
+    }
+
+    #[test]
+    fn a_cut_goes_on_from_where_the_yarn_is() {
+        let (thread, wakes) = thread();
+        load(&thread, |_| {});
+        thread.send(SimCommand::StepOnce);
+        let whole = wait(&thread, &wakes, |s| s.time_s > 0.0);
+        thread.send(SimCommand::Operate(Operation::Cut(VisitId(40))));
+        let cut = wait(&thread, &wakes, |s| s.surgery.operations.len() == 1);
+        assert_eq!(cut.net.yarns.len(), whole.net.yarns.len() + 1);
+        assert!(cut.state.fits(&cut.net) && cut.curves.curves.len() == cut.net.yarns.len());
+        assert_eq!(cut.time_s, whole.time_s);
+        thread.send(SimCommand::Operate(Operation::Cut(VisitId(1 << 20))));
+        let refused = wait(&thread, &wakes, |s| s.error.is_some());
+        assert!(refused.error.as_deref().unwrap().contains("there is no visit 1048576"));
+        assert_eq!(refused.surgery.operations.len(), 1);
     }
 
     #[test]
