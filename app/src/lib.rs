@@ -6,6 +6,8 @@
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
 //! | `relax` | relaxing the stitch mesh of a project, and how even it is |
 //! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet`, `charts` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program, the contact sheet of stitches, knitting charts |
+//! | `lab` | virtual textile experiments |
+//! | `page` | pages laid out as the window is, drawn without one |
 //! | `cli` | the command line |
 //! | `window` | the same document with a mouse |
 
@@ -18,8 +20,10 @@ pub mod drawing;
 pub mod export;
 pub mod files;
 pub mod inspect;
+pub mod lab;
 pub mod library;
 pub mod open;
+mod page;
 pub mod preview;
 pub mod problems;
 pub mod project;

@@ -10,7 +10,7 @@ use crate::files;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use sim_core::{Facts, Material, Materials, Scene, carry_over};
+use sim_core::{Facts, Material, Materials, RestShape, Scene, carry_over};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -56,6 +56,10 @@ pub struct Fabric {
     pub stitches: Arc<StitchMesh>,
     /// Its yarn as laid.
     pub net: Arc<YarnNet>,
+    /// Shapes of relaxed loops with which it was laid, so that it keeps its size; laid as drawn without them.
+    pub rest_shape: Option<Arc<RestShape>>,
+    /// Where the yarn begins.
+    start: Arc<YarnState>,
     /// Where the yarn has got to, once something was simulated.
     pub state: Option<Arc<YarnState>>,
     /// Figures of that simulation.
@@ -65,19 +69,39 @@ pub struct Fabric {
 impl Fabric {
     /// The fabric of a stitch mesh, its yarn just laid.
     pub fn new(stitches: StitchMesh) -> Self {
-        let net = Arc::new(lay(&stitches));
-        Self { stitches: Arc::new(stitches), net, state: None, facts: None }
+        let net = lay(&stitches);
+        Self::of(stitches, net, None)
+    }
+
+    /// The fabric of a stitch mesh with loops of these shapes, if any.
+    pub fn with_rest_shape(stitches: StitchMesh, shape: Option<Arc<RestShape>>) -> Self {
+        let net = lay(&stitches);
+        Self::of(stitches, net, shape)
     }
 
     /// The fabric after its stitches have been edited, its yarn laid again where it has to be.
     pub fn edited(&self, stitches: StitchMesh) -> Self {
-        let net = Arc::new(relay(&self.net, &self.stitches, &stitches));
-        Self { stitches: Arc::new(stitches), net, state: None, facts: None }
+        match &self.rest_shape {
+            None => {
+                let net = relay(&self.net, &self.stitches, &stitches);
+                Self::of(stitches, net, None)
+            }
+            shape => Self::with_rest_shape(stitches, shape.clone()),
+        }
     }
 
-    /// Where the yarn is: the simulated state, or as laid.
+    fn of(stitches: StitchMesh, mut net: YarnNet, rest_shape: Option<Arc<RestShape>>) -> Self {
+        let start = match &rest_shape {
+            Some(shape) => shape.apply(&stitches, &mut net),
+            None => net.laid_state(),
+        };
+        let (stitches, net, start) = (Arc::new(stitches), Arc::new(net), Arc::new(start));
+        Self { stitches, net, rest_shape, start, state: None, facts: None }
+    }
+
+    /// Where the yarn is: the simulated state, or where it begins.
     pub fn state(&self) -> Arc<YarnState> {
-        self.state.clone().unwrap_or_else(|| Arc::new(self.net.laid_state()))
+        Arc::clone(self.state.as_ref().unwrap_or(&self.start))
     }
 }
 
@@ -192,6 +216,9 @@ struct FileFabric {
     /// Absent where nothing is marked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     marks: Option<Marks>,
+    /// Absent where loops have the shapes in which they are drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rest_shape: Option<RestShape>,
     state: Option<YarnState>,
     facts: Option<Facts>,
 }
@@ -212,6 +239,7 @@ impl FileFabric {
             dyes: dyes.iter().any(|d| *d != Dye::UNDYED).then(|| dyes.to_vec()),
             places: places.iter().any(Option::is_some).then(|| places.to_vec()),
             marks: Some(marks).filter(|m| **m != Marks::default()).cloned(),
+            rest_shape: fabric.rest_shape.as_deref().cloned(),
             state: fabric.state.as_deref().cloned(),
             facts: fabric.facts.clone(),
         }
@@ -225,7 +253,7 @@ impl FileFabric {
             self.places.unwrap_or_else(|| vec![None; faces]),
             self.marks.unwrap_or_default(),
         )?;
-        let mut fabric = Fabric::new(stitches);
+        let mut fabric = Fabric::with_rest_shape(stitches, self.rest_shape.map(Arc::new));
         if let Some(state) = self.state {
             if !state.fits(&fabric.net) || !state.is_finite() {
                 bail!("the state of the yarn does not belong to the stitches");

@@ -11,6 +11,7 @@ use std::collections::HashSet;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::label::Row;
+use stitch_mesh::stitch_mesh::StitchMesh;
 
 /// Width of the stitches of a swatch [m]: hand-knitting yarn on 4 mm needles.
 pub const SWATCH_STITCH_WIDTH: f64 = 4.5e-3;
@@ -57,6 +58,22 @@ pub fn swatch(text: &str, width: Width, high: usize) -> Result<(Project, SwatchF
     Ok((project, facts))
 }
 
+/// The smallest piece of a pattern that shows what its stitches are like far from any border.
+///
+/// # Errors
+/// Where the text is wrong, or what a stitch mesh cannot hold of it.
+pub(crate) fn sample(text: &str, size: StitchSize) -> Result<StitchMesh> {
+    /// Stitches and rows at least.
+    const LEAST: [usize; 2] = [16, 20];
+    let pattern = Pattern::read(text)?;
+    let [once, twice] = [1, 2].map(|n| pattern.work(Width::Repeats(n)).map(|w| w.cast_on));
+    let (once, twice) = (once?, twice?);
+    let across = 1 + LEAST[0].saturating_sub(once).div_ceil(twice.saturating_sub(once).max(1));
+    let worked = pattern.work(Width::Repeats(across))?;
+    let high = LEAST[1].div_ceil(worked.rows.len().max(1));
+    Ok(knit(&pattern, &repeated(worked, high)?, size)?)
+}
+
 /// The name of a pattern: its first line, if that is a comment.
 pub fn title(text: &str) -> &str {
     let first = text.lines().next().and_then(|line| line.strip_prefix('#')).map(str::trim);
@@ -64,7 +81,7 @@ pub fn title(text: &str) -> &str {
 }
 
 /// A pattern worked several times over its rows.
-fn repeated(worked: Worked, times: usize) -> Result<Worked> {
+pub(crate) fn repeated(worked: Worked, times: usize) -> Result<Worked> {
     let count = worked.rows.len();
     match times {
         0 => bail!("a pattern has to be worked once at least"),

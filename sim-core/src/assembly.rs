@@ -298,7 +298,7 @@ mod tests {
             let at = |h: f64| {
                 let mut moved = state.clone();
                 change(&mut moved, h);
-                model.elastic_energy(&materials, &moved)
+                model.energies(&materials, &moved).elastic()
             };
             (at(-2e-8) - 8.0 * at(-1e-8) + 8.0 * at(1e-8) - at(2e-8)) / 12e-8
         };

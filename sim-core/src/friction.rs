@@ -157,6 +157,23 @@ impl Anchors {
             self.between[front.index()] += shift(front.index()) - shift(behind.index());
         }
     }
+
+    /// Energy of the springs that stick, where `stick` is the stiffness of each visit's [J].
+    pub fn energy(&self, stacks: &[Stack], sliding: &[f64], stick: impl Fn(VisitId) -> f64) -> f64 {
+        let of = |stack: &Stack| {
+            let crosses = |i: usize| {
+                let beside = [i.checked_sub(1), Some(i)].into_iter().flatten();
+                beside.filter_map(|i| stack.parallel.get(i)).any(|parallel| !parallel)
+            };
+            let visits = stack.visits.iter().enumerate().filter(|(i, _)| crosses(*i));
+            let own = visits.map(|(_, v)| (*v, sliding[v.index()] - self.own[v.index()]));
+            let between = stack
+                .pairs()
+                .map(|[a, b]| (a, sliding[a.index()] - sliding[b.index()] - self.between[a.index()]));
+            own.chain(between).map(|(v, stretch)| 0.5 * stick(v) * stretch * stretch).sum::<f64>()
+        };
+        stacks.iter().map(of).sum()
+    }
 }
 
 /// The spring that stands for friction during one step.

@@ -280,31 +280,6 @@ impl Model {
         self.dyes.iter().map(|dye| materials.of(*dye).clone()).collect()
     }
 
-    /// Potential energy of the yarn itself: stretch, bend, wrap and spacing [J].
-    pub fn elastic_energy(&self, materials: &Materials, state: &YarnState) -> f64 {
-        let materials = self.resolve(materials);
-        let of = |dye: u32| &materials[dye as usize];
-        let segment = |s: &SegmentTerm| {
-            let (q, material): ([f64; 8], _) = (s.stencil.coordinates(state), of(s.dye));
-            s.stretch(material).energy(&q) + s.spacing(material).energy(&[q[3], q[7]])
-        };
-        self.segments.iter().map(segment).sum::<f64>()
-            + self.bends.iter().map(|b| b.bend(of(b.dye)).energy(&b.stencil.coordinates(state))).sum::<f64>()
-            + self.wraps.iter().map(|w| w.wrap(of(w.dye)).energy(&w.stencil.points(state))).sum::<f64>()
-    }
-
-    /// Kinetic energy [J].
-    pub fn kinetic_energy(&self, materials: &Materials, state: &YarnState) -> f64 {
-        let materials = self.resolve(materials);
-        let of = |s: &SegmentTerm| {
-            let m = crate::mass::mass(materials[s.dye as usize].density, &s.stencil.coordinates(state));
-            let v: [f64; 8] = s.stencil.velocities(state);
-            let momentum = |i: usize| (0..8).map(|j| m[i][j] * v[j]).sum::<f64>();
-            0.5 * (0..8).map(|i| v[i] * momentum(i)).sum::<f64>()
-        };
-        self.segments.iter().map(of).sum()
-    }
-
     /// Mass of the yarn around each node when laid, [node_count] [kg].
     pub fn node_masses(&self, materials: &Materials) -> Vec<f64> {
         let materials = self.resolve(materials);

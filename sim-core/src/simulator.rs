@@ -1,5 +1,6 @@
 //! The simulator: a net, its state, and time going by.
 
+use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
 use crate::local::LEAST_LENGTH;
@@ -16,8 +17,7 @@ use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stitch_mesh::ids::NodeId;
-use stitch_mesh::ids::VisitId;
+use stitch_mesh::ids::{NodeId, VisitId};
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
@@ -312,6 +312,16 @@ impl Simulator {
         self.stepper.set_materials(&materials);
         self.materials = materials;
         Ok(())
+    }
+
+    /// The energies of the yarn.
+    pub fn energies(&self) -> Energies {
+        let Stuck { state, anchors } = &self.now;
+        let Stepper { model, stacks, .. } = &self.stepper;
+        let yarns = model.resolve(&self.materials);
+        let stick = |v: VisitId| yarns[model.dye_of[v.index()] as usize].friction_stiffness;
+        let sticking = anchors.energy(stacks, &state.sliding, stick);
+        Energies { sticking, ..model.energies(&self.materials, state) }
     }
 
     /// Kinetic energy [J].

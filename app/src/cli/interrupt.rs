@@ -25,6 +25,13 @@ pub fn progress_bar(length: f64, what: &'static str) -> Result<ProgressBar> {
     Ok(bar)
 }
 
+/// A progress bar on standard error, if that is a terminal, for work in a thousand parts.
+pub fn work_bar(what: String) -> Result<ProgressBar> {
+    let bar = ProgressBar::new(1000).with_message(what);
+    bar.set_style(ProgressStyle::with_template("{msg} {wide_bar} {percent} %, {eta} to go")?);
+    Ok(bar)
+}
+
 /// A count of steps on standard error, if that is a terminal, for work that ends when it is done.
 pub fn step_counter(what: &'static str) -> Result<ProgressBar> {
     let counter = ProgressBar::new_spinner().with_prefix(what);

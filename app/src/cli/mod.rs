@@ -3,6 +3,7 @@
 mod chart;
 mod demo;
 mod interrupt;
+mod lab;
 mod simulate;
 mod values;
 mod written;
@@ -11,6 +12,7 @@ use crate::command::{Command, read_script};
 use crate::document::Document;
 use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
+use crate::lab::Experiment;
 use crate::open::open_any;
 use crate::project::{DEFAULT_STITCH_WIDTH, Project};
 use crate::{export, files, library, sheet};
@@ -187,6 +189,18 @@ enum Verb {
         #[command(flatten)]
         print: Output,
     },
+    /// Does a virtual textile experiment: figures, CSV, plots and pictures
+    Lab {
+        #[arg(value_enum)]
+        experiment: Experiment,
+        /// Folder for the results
+        #[arg(long, default_value = "out/lab")]
+        out: PathBuf,
+        #[command(flatten)]
+        options: lab::Options,
+        #[command(flatten)]
+        print: Output,
+    },
     /// Facts about a project
     Inspect {
         project: PathBuf,
@@ -319,6 +333,7 @@ fn run(arguments: Arguments) -> Result<()> {
             files::write_png(&output, &pictures)
         }
         Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
+        Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
 }

@@ -7,12 +7,14 @@
 mod labels;
 mod name;
 mod pins;
+mod rest_shape;
 mod script;
 mod stitches;
 mod structure;
 mod tessellation;
 mod yarns;
 
+pub(crate) use rest_shape::mean_size;
 pub use script::{read_script, write_script};
 
 use crate::project::Project;
@@ -250,6 +252,11 @@ pub enum Command {
     },
     /// Puts the yarn back to where it was laid.
     ResetYarn,
+    /// Lays the yarn anew with loops of the shape that a pattern has when it is relaxed, so that the fabric keeps its size.
+    Compensate {
+        /// The pattern in KnitSpeak; as it is drawn if absent.
+        text: Option<String>,
+    },
     /// Makes the stitches as even as they can be, and lays the yarn again.
     RelaxMesh {
         /// Height of a stitch over its width at rest.
@@ -344,6 +351,7 @@ impl Command {
                     fabric.facts = None;
                 }
             }
+            Self::Compensate { text } => rest_shape::compensate(project, text.as_deref())?,
             Self::RelaxMesh { aspect, fill, surface } => {
                 let params = RelaxParams { aspect: *aspect, fill: *fill, ..RelaxParams::default() };
                 *project = relax_mesh(project, params, *surface, watch)?;

@@ -77,6 +77,8 @@ impl Command {
             Self::ClearMaterial { color } => format!("Yarn {color} as the rest"),
             Self::SetScene { .. } => "Change scene".into(),
             Self::ResetYarn => "Lay yarn anew".into(),
+            Self::Compensate { text: Some(text) } => format!("Loops at rest as in {}", title(text)),
+            Self::Compensate { text: None } => "Loops as drawn".into(),
             Self::RelaxMesh { surface: true, .. } => "Relax stitches".into(),
             Self::RelaxMesh { surface: false, .. } => "Relax stitches freely".into(),
         }

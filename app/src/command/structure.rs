@@ -17,7 +17,7 @@ fn reshape(
     let before = project.clone();
     let from = before.fabric()?;
     let (stitches, survivors) = edit(&from.stitches)?;
-    let fabric = Fabric::new(stitches);
+    let fabric = Fabric::with_rest_shape(stitches, from.rest_shape.clone());
     let was = survivors.faces_before();
     let old_face = |f: FaceId| was.get(f.index()).copied().flatten();
     project.scene.pins = pins::moved(&before.scene.pins, &from.net, &fabric.net, old_face);

@@ -1,8 +1,8 @@
 //! The contact sheet of stitches: a settled swatch of each, from the front and from the back, with its name and symbol.
 
-mod page;
 mod swatch;
 
+use crate::page;
 use anyhow::{Context, Result};
 use egui::text::LayoutJob;
 use egui::{Align, Align2, Color32, FontId, Painter, Pos2, Rect, TextureHandle, Vec2, pos2, vec2};
@@ -56,7 +56,7 @@ pub fn draw(gpu: &Gpu, watch: &mut dyn FnMut(usize, usize)) -> Result<RgbaImage>
     let lines: usize = chapters.iter().map(|(_, entries)| entries.len().div_ceil(ACROSS)).sum();
     let width = ACROSS as f32 * (CELL.x + GAP) + GAP;
     let height = lines as f32 * CELL.y + chapters.len() as f32 * HEADING + GAP;
-    page::draw(gpu, &context, [width as u32, height as u32], |ui| {
+    page::draw(gpu, &context, [width as u32, height as u32], 1.0, |ui| {
         let painter = ui.painter();
         let mut top = GAP / 2.0;
         for (heading, entries) in &chapters {

@@ -146,6 +146,7 @@ impl Editor {
         panels::status::show(self, ui);
         panels::left::show(self, ui);
         panels::right::show(self, ui);
+        panels::lab::show(self, ui.ctx());
         super::chart::show(self, ui);
         self.load_yarn();
         // Keys and buttons may have gone to another stage: the pointer has to find the faces of that one.
@@ -235,7 +236,8 @@ impl Editor {
         let view = self.session.latest();
         if view.revision != self.view.revision {
             if view.path != self.view.path {
-                self.panel = panels::State { aspect: self.panel.aspect, ..panels::State::of(&view) };
+                let kept = std::mem::replace(&mut self.panel, panels::State::of(&view));
+                (self.panel.aspect, self.panel.lab) = (kept.aspect, kept.lab);
                 self.framed = self.framed
                     && self.view.path.is_none()
                     && view.project.labelled == self.view.project.labelled;
@@ -301,7 +303,7 @@ impl Editor {
                 net: fabric.net.clone(),
                 materials: wants.0.clone(),
                 scene: wants.1.clone(),
-                state: fabric.state.clone(),
+                state: Some(fabric.state()),
             });
             self.loaded = Some(fabric.net.clone());
             self.placed = self.view.placed;

@@ -36,6 +36,13 @@ pub(super) const ACTIONS: &[Action] = &[
     Action::new("Redo", "Do again what was taken back", |e| e.request(Request::Redo))
         .key(CTRL_SHIFT, Key::Z)
         .unless(|e| e.view.undone.is_empty().then_some("there is nothing to redo")),
+    Action::new(
+        "Experiments",
+        "What fabrics do when they are pulled, sheared, hung and let go, in numbers",
+        |e| {
+            e.panel.lab.open = !e.panel.lab.open;
+        },
+    ),
     Action::new("Put down", "Put the tool down; with nothing in hand, select nothing", Editor::put_down)
         .key(Modifiers::NONE, Key::Escape),
     Action::new("Mesh", "The mesh as it was read", |e| e.go_to(Stage::Mesh))

@@ -3,6 +3,7 @@
 mod colour;
 mod evenness;
 mod history;
+pub mod lab;
 pub mod left;
 pub mod library;
 mod material;
@@ -55,6 +56,8 @@ pub struct State {
     pub tab: left::Tab,
     /// The pattern library.
     pub written: library::State,
+    /// Experiments.
+    pub lab: lab::State,
     /// Numbers of the alternations.
     pub alternation: patterns::Numbers,
 }
@@ -77,6 +80,7 @@ impl State {
             brush_radius: 30.0,
             palette_filter: String::new(),
             written: library::State::default(),
+            lab: lab::State::default(),
             alternation: patterns::Numbers::default(),
         }
     }

@@ -42,6 +42,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                 button(editor, ui, name);
             }
             choice(editor, ui, "Chart", editor.chart.is_some());
+            choice(editor, ui, "Experiments", editor.panel.lab.open);
             ui.menu_button("View", |ui| {
                 for name in ["Frame all", "Frame selected", "Left", "Right", "Top", "Three-quarter"] {
                     button(editor, ui, name);
