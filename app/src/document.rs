@@ -1,16 +1,15 @@
 //! The document: a project and the history of what was done to it.
 
 use crate::command::Command;
+use crate::fabric::Moved;
 use crate::project::Project;
 use crate::relax::unwatched;
 use anyhow::Result;
-use sim_core::Facts;
 use std::collections::HashSet;
 use std::hash::Hash;
 use std::sync::Arc;
 use stitch_mesh::edit::Survivors;
 use stitch_mesh::ids::FaceId;
-use stitch_mesh::yarn_net::YarnState;
 
 /// A project that is being edited. Needs no window.
 #[derive(Clone, Debug)]
@@ -138,15 +137,15 @@ impl Document {
         self.undone.iter().rev().map(Step::name)
     }
 
-    /// Takes over where the simulation has brought the yarn. No step of the history: time is not undone, edits are. A state
-    /// of another net (one from before an edit) is dropped.
-    pub fn set_state(&mut self, state: Arc<YarnState>, facts: Option<Facts>) {
-        if let Some(fabric) = &mut self.project.fabric
-            && state.fits(&fabric.net)
-            && state.is_finite()
+    /// Takes over where the simulation has brought the yarn. No step of the history: time is not undone, edits are. What
+    /// began with another net (one from before an edit) is dropped.
+    pub fn take_over(&mut self, moved: Moved) {
+        if let Some(fabric) = &self.project.fabric
+            && Arc::ptr_eq(&moved.from, &fabric.net)
+            && moved.state.fits(&moved.net)
+            && moved.state.is_finite()
         {
-            fabric.state = Some(state);
-            fabric.facts = facts;
+            self.project.take_over(moved, None);
         }
     }
 }
@@ -187,7 +186,7 @@ fn union<T: Copy + Eq + Hash>(first: &[T], second: &[T]) -> Vec<T> {
 mod tests {
     use super::*;
     use crate::command::{read_script, write_script};
-    use crate::project::Fabric;
+    use crate::fabric::Fabric;
     use stitch_mesh::edge_counts::StitchSize;
     use stitch_mesh::pieces::rectangle;
     use stitch_mesh::stitch::Stitch;

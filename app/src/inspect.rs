@@ -1,7 +1,8 @@
 //! Facts about a project, for people and scripts.
 
+use crate::fabric::Fabric;
 use crate::problems::{Problem, problems};
-use crate::project::{Fabric, Project};
+use crate::project::Project;
 use crate::relax::{MeshStrain, mesh_strain};
 use glam::DVec3;
 use serde::Serialize;

@@ -18,6 +18,7 @@ pub mod command;
 pub mod document;
 pub mod drawing;
 pub mod export;
+pub mod fabric;
 pub mod files;
 pub mod inspect;
 pub mod lab;

@@ -1,6 +1,7 @@
 //! The patterns that come with the program, and a picture of each.
 
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use crate::scenes::pinned_out;
 use crate::written::{swatch, title};
 use anyhow::{Context, Result};

@@ -1,6 +1,7 @@
 //! What keeps a project from being knitted, or will show: each with its place, in a knitter's words.
 
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use serde::Serialize;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::edge_counts::StitchSize;

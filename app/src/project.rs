@@ -6,11 +6,12 @@
 //! The file is JSON, `{"purlwise": 1, …}`. Half-edge structures are built again on reading, and so is the yarn net, which
 //! follows from the stitch mesh; the state of the yarn has to fit it.
 
+use crate::fabric::{Fabric, Moved};
 use crate::files;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use sim_core::{Facts, Material, Materials, RestShape, Scene, carry_over};
+use sim_core::{Facts, Material, Materials, RestShape, Scene, Surgery, carry_over};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -18,13 +19,12 @@ use stitch_mesh::dye::Dye;
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};
 use stitch_mesh::ids::{FaceId, HalfEdgeId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh};
-use stitch_mesh::lay::{lay, relay};
 use stitch_mesh::marks::Marks;
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::obj::{Unit, read_obj};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::{Place, StitchMesh};
-use stitch_mesh::yarn_net::{YarnNet, YarnState};
+use stitch_mesh::yarn_net::YarnState;
 
 /// Version of the file that this program writes, and the newest that it reads.
 const VERSION: u32 = 1;
@@ -47,62 +47,6 @@ pub struct Project {
     pub counts: Option<EdgeCounts>,
     /// The fabric, once the mesh has been tessellated.
     pub fabric: Option<Fabric>,
-}
-
-/// Stitches and their yarn.
-#[derive(Clone, Debug)]
-pub struct Fabric {
-    /// The stitch mesh.
-    pub stitches: Arc<StitchMesh>,
-    /// Its yarn as laid.
-    pub net: Arc<YarnNet>,
-    /// Shapes of relaxed loops with which it was laid, so that it keeps its size; laid as drawn without them.
-    pub rest_shape: Option<Arc<RestShape>>,
-    /// Where the yarn begins.
-    start: Arc<YarnState>,
-    /// Where the yarn has got to, once something was simulated.
-    pub state: Option<Arc<YarnState>>,
-    /// Figures of that simulation.
-    pub facts: Option<Facts>,
-}
-
-impl Fabric {
-    /// The fabric of a stitch mesh, its yarn just laid.
-    pub fn new(stitches: StitchMesh) -> Self {
-        let net = lay(&stitches);
-        Self::of(stitches, net, None)
-    }
-
-    /// The fabric of a stitch mesh with loops of these shapes, if any.
-    pub fn with_rest_shape(stitches: StitchMesh, shape: Option<Arc<RestShape>>) -> Self {
-        let net = lay(&stitches);
-        Self::of(stitches, net, shape)
-    }
-
-    /// The fabric after its stitches have been edited, its yarn laid again where it has to be.
-    pub fn edited(&self, stitches: StitchMesh) -> Self {
-        match &self.rest_shape {
-            None => {
-                let net = relay(&self.net, &self.stitches, &stitches);
-                Self::of(stitches, net, None)
-            }
-            shape => Self::with_rest_shape(stitches, shape.clone()),
-        }
-    }
-
-    fn of(stitches: StitchMesh, mut net: YarnNet, rest_shape: Option<Arc<RestShape>>) -> Self {
-        let start = match &rest_shape {
-            Some(shape) => shape.apply(&stitches, &mut net),
-            None => net.laid_state(),
-        };
-        let (stitches, net, start) = (Arc::new(stitches), Arc::new(net), Arc::new(start));
-        Self { stitches, net, rest_shape, start, state: None, facts: None }
-    }
-
-    /// Where the yarn is: the simulated state, or where it begins.
-    pub fn state(&self) -> Arc<YarnState> {
-        Arc::clone(self.state.as_ref().unwrap_or(&self.start))
-    }
 }
 
 impl Project {
@@ -142,6 +86,17 @@ impl Project {
         let was = |f: FaceId| was.map_or(Some(f), |list| list.get(f.index()).copied().flatten());
         fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net, was)));
         fabric.facts = from.facts.clone().filter(|_| Arc::ptr_eq(&fabric.net, &from.net));
+    }
+
+    /// Takes over where a simulation that began with this fabric has brought its yarn. Pins on nodes that are gone go too.
+    pub fn take_over(&mut self, moved: Moved, facts: Option<Facts>) {
+        let Some(fabric) = &mut self.fabric else { return };
+        if !moved.surgery.operations.is_empty()
+            && let Ok((_, nodes)) = moved.surgery.replay(&moved.from)
+        {
+            self.scene.follow(&nodes);
+        }
+        fabric.take_over(moved, facts);
     }
 
     /// Reads a `.purl` file.
@@ -219,6 +174,9 @@ struct FileFabric {
     /// Absent where loops have the shapes in which they are drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     rest_shape: Option<RestShape>,
+    /// Absent where nothing was cut and nothing has slipped out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surgery: Option<Surgery>,
     state: Option<YarnState>,
     facts: Option<Facts>,
 }
@@ -240,6 +198,7 @@ impl FileFabric {
             places: places.iter().any(Option::is_some).then(|| places.to_vec()),
             marks: Some(marks).filter(|m| **m != Marks::default()).cloned(),
             rest_shape: fabric.rest_shape.as_deref().cloned(),
+            surgery: Some(&fabric.surgery).filter(|s| **s != Surgery::default()).cloned(),
             state: fabric.state.as_deref().cloned(),
             facts: fabric.facts.clone(),
         }
@@ -253,7 +212,8 @@ impl FileFabric {
             self.places.unwrap_or_else(|| vec![None; faces]),
             self.marks.unwrap_or_default(),
         )?;
-        let mut fabric = Fabric::with_rest_shape(stitches, self.rest_shape.map(Arc::new));
+        let mut fabric = Fabric::with_rest_shape(stitches, self.rest_shape.map(Arc::new))
+            .after(self.surgery.unwrap_or_default())?;
         if let Some(state) = self.state {
             if !state.fits(&fabric.net) || !state.is_finite() {
                 bail!("the state of the yarn does not belong to the stitches");

@@ -1,7 +1,8 @@
 //! Relaxing the stitch mesh of a project: its stitches move on the smooth surface of the input until they are as even as they
 //! can be, and the yarn is laid again.
 
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use anyhow::{Result, bail};
 use serde::Serialize;
 use sim_core::Material;

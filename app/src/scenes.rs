@@ -1,7 +1,7 @@
 //! Scenes: what surrounds a fabric, by name or from a file.
 
+use crate::fabric::Fabric;
 use crate::files;
-use crate::project::Fabric;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use sim_core::{Body, Material, Pin, Scene};

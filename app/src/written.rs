@@ -1,6 +1,7 @@
 //! Written patterns and projects: a swatch of a pattern, a pattern tiled over a fabric, instructions for a fabric.
 
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use anyhow::{Context, Result, anyhow, bail};
 use patterns::instructions::instructions;
 use patterns::knit::knit;

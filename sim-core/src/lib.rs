@@ -63,7 +63,7 @@ pub use scene::{Pin, Scene, SceneError};
 pub use simulator::{SettleGoal, SettleProgress, Settled, SimError, Simulator, StepReport};
 pub use solver::cholesky::SolveError;
 pub use step::Rejection;
-pub use surgery::{Operation, Surgery, SurgeryError};
+pub use surgery::{Operated, Operation, Surgery, SurgeryError, operate};
 pub use thread::{SimCommand, SimThread, Snapshot};
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::body::Body;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use stitch_mesh::ids::NodeId;
 
 /// A node held by a spring; dragging the fabric moves the target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,6 +78,15 @@ impl Scene {
     /// No gravity, nothing around.
     pub fn empty() -> Self {
         Self { gravity: DVec3::ZERO, ..Self::default() }
+    }
+
+    /// Follows nodes to what they have become. Pins on nodes that are gone go too.
+    pub fn follow(&mut self, nodes: &[Option<NodeId>]) {
+        self.pins.retain_mut(|pin| {
+            let now = nodes.get(pin.node as usize).copied().flatten();
+            pin.node = now.map_or(pin.node, |n| n.0);
+            now.is_some()
+        });
     }
 
     /// Whether this scene can be simulated with a net of `nodes` nodes.

@@ -221,18 +221,11 @@ impl Simulator {
         });
         let stepper = Stepper::new(model, &self.materials)?;
         let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
-        if self.surgery.operations.is_empty() {
-            self.surgery.taken_in = self.state().taken_in;
-        }
-        self.surgery.operations.push(operation);
+        self.surgery.add(operation, self.state().taken_in);
         self.stepper = stepper;
         self.take_in = TakeIn::default();
         self.now = Stuck { state: done.state, anchors };
-        self.scene.pins.retain_mut(|pin| {
-            let node = done.node.get(pin.node as usize).copied().flatten();
-            pin.node = node.map_or(pin.node, |n| n.0);
-            node.is_some()
-        });
+        self.scene.follow(&done.node);
         Ok(())
     }
 

@@ -1,7 +1,8 @@
 //! Fabrics of every topology, small enough to be edited thousands of times.
 
 use app::command::Command;
-use app::project::{Fabric, Project};
+use app::fabric::Fabric;
+use app::project::Project;
 use glam::DVec3;
 use std::f64::consts::TAU;
 use stitch_mesh::edge_counts::StitchSize;

@@ -5,7 +5,8 @@
 
 use app::command::Command;
 use app::document::Document;
-use app::project::{Fabric, Project};
+use app::fabric::Fabric;
+use app::project::Project;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use std::collections::HashSet;

@@ -4,7 +4,8 @@
 
 use app::bundled::pullover;
 use app::drawing::{Stage, drawing};
-use app::project::{Fabric, Project};
+use app::fabric::Fabric;
+use app::project::Project;
 use image::{RgbaImage, imageops::flip_horizontal};
 use render::{Camera, Drawing, NamedView, render_image};
 use stitch_mesh::edge_counts::StitchSize;

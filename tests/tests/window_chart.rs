@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, which clippy cannot see")]
 
-use app::project::{Fabric, Project};
+use app::fabric::Fabric;
+use app::project::Project;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use stitch_mesh::edge_counts::StitchSize;

@@ -3,6 +3,7 @@
 use super::interrupt::{interrupted, progress_bar, step_counter};
 use super::picture;
 use crate::drawing::Stage;
+use crate::fabric::Moved;
 use crate::project::Project;
 use crate::relax::relax_mesh;
 use crate::scenes;
@@ -12,7 +13,6 @@ use sim_core::mesh_relax::RelaxParams;
 use sim_core::{Scene, SettleGoal, Settled, Simulator};
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Speed under which a fabric counts as at rest [m/s]: a loop's width in ten seconds or so.
 const STILL: f64 = 1e-3;
@@ -58,8 +58,7 @@ pub fn settle(mut project: Project, scene: Scene, limit: f64, what: &'static str
         Settled::Still => {}
     }
     project.scene = scene;
-    store(&mut project, &simulator);
-    Ok(project)
+    moved(&project, &simulator)
 }
 
 /// Simulates a scene for some seconds, with a picture every frame if a folder is given.
@@ -88,17 +87,22 @@ pub fn simulate(
         if let (Some(folder), Some(gpu)) = (frames, &gpu)
             && simulator.time_s() >= f64::from(frame) * FRAME
         {
-            store(&mut project, &simulator);
             let path = folder.join(format!("{frame:05}.png"));
-            picture(gpu, &project, Stage::Yarn, NamedView::ThreeQuarter, [960, 720], &path)?;
+            picture(
+                gpu,
+                &moved(&project, &simulator)?,
+                Stage::Yarn,
+                NamedView::ThreeQuarter,
+                [960, 720],
+                &path,
+            )?;
             frame += 1;
         }
         simulator.step()?;
         bar.set_position((1e3 * simulator.time_s()) as u64);
     }
     bar.finish_and_clear();
-    store(&mut project, &simulator);
-    Ok(project)
+    moved(&project, &simulator)
 }
 
 fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
@@ -107,9 +111,9 @@ fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
     Ok(Simulator::new(&fabric.net, project.materials.clone(), scene.clone(), state)?)
 }
 
-fn store(project: &mut Project, simulator: &Simulator) {
-    if let Some(fabric) = &mut project.fabric {
-        fabric.state = Some(Arc::new(simulator.state().clone()));
-        fabric.facts = Some(simulator.facts());
-    }
+/// The project when the simulation that began with it has come so far.
+fn moved(project: &Project, simulator: &Simulator) -> Result<Project> {
+    let mut after = project.clone();
+    after.take_over(Moved::by(simulator, &project.fabric()?.net), Some(simulator.facts()));
+    Ok(after)
 }

@@ -11,12 +11,14 @@ mod rest_shape;
 mod script;
 mod stitches;
 mod structure;
+mod surgery;
 mod tessellation;
 mod yarns;
 
 pub(crate) use rest_shape::mean_size;
 pub use script::{read_script, write_script};
 
+use crate::fabric::Fabric;
 use crate::project::Project;
 use crate::relax::{Watch, relax_mesh, unwatched};
 use anyhow::{Context, Result, bail};
@@ -250,7 +252,17 @@ pub enum Command {
         /// All of it.
         scene: Scene,
     },
-    /// Puts the yarn back to where it was laid.
+    /// Cuts the yarn in the middle of the loops of some stitches.
+    CutYarn {
+        /// The faces.
+        faces: Vec<u32>,
+    },
+    /// Lets the loops of some stitches slip off what holds them, so that they may run.
+    DropLoops {
+        /// The faces.
+        faces: Vec<u32>,
+    },
+    /// Puts the yarn back to where it was laid, and mends what was cut.
     ResetYarn,
     /// Lays the yarn anew with loops of the shape that a pattern has when it is relaxed, so that the fabric keeps its size.
     Compensate {
@@ -346,11 +358,10 @@ impl Command {
                 project.scene = scene.clone();
             }
             Self::ResetYarn => {
-                if let Some(fabric) = &mut project.fabric {
-                    fabric.state = None;
-                    fabric.facts = None;
-                }
+                project.fabric = project.fabric.as_ref().map(Fabric::laid_anew);
             }
+            Self::CutYarn { faces } => surgery::cut(project, faces)?,
+            Self::DropLoops { faces } => surgery::drop(project, faces)?,
             Self::Compensate { text } => rest_shape::compensate(project, text.as_deref())?,
             Self::RelaxMesh { aspect, fill, surface } => {
                 let params = RelaxParams { aspect: *aspect, fill: *fill, ..RelaxParams::default() };

@@ -76,6 +76,8 @@ impl Command {
             Self::UsePreset { color: Some(color), preset } => format!("{} for {color}", preset.name()),
             Self::ClearMaterial { color } => format!("Yarn {color} as the rest"),
             Self::SetScene { .. } => "Change scene".into(),
+            Self::CutYarn { faces } => format!("Cut the yarn of {}", many(faces.len(), "stitch")),
+            Self::DropLoops { faces } => format!("Drop {}", many(faces.len(), "stitch")),
             Self::ResetYarn => "Lay yarn anew".into(),
             Self::Compensate { text: Some(text) } => format!("Loops at rest as in {}", title(text)),
             Self::Compensate { text: None } => "Loops as drawn".into(),

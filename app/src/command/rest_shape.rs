@@ -1,6 +1,7 @@
 //! Rest-shape compensation of a project.
 
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use crate::relax::mean_width;
 use crate::written::sample;
 use anyhow::Result;

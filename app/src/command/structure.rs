@@ -1,7 +1,8 @@
 //! Commands that change the faces of the stitch mesh. What came through keeps its yarn where it is.
 
 use super::pins;
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use crate::written::{extent, swatch, tiled};
 use anyhow::Result;
 use patterns::tile::Layout;

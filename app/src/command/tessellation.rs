@@ -1,7 +1,8 @@
 //! Commands that decide how many stitches there are, and cut the labelled mesh into them.
 
 use super::find_edge;
-use crate::project::{Fabric, Project};
+use crate::fabric::Fabric;
+use crate::project::Project;
 use crate::relax::mean_width;
 use anyhow::{Result, bail};
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};

@@ -14,6 +14,7 @@ use super::view::{Survey, View};
 use super::{actions, panels};
 use crate::command::Command;
 use crate::drawing::Stage;
+use crate::fabric::{Fabric, Moved};
 use crate::project::Project;
 use anyhow::Result;
 use glam::{DVec3, Vec3};
@@ -183,7 +184,12 @@ impl Editor {
     /// Sends a request, with the yarn as it is just now.
     pub(super) fn request(&mut self, request: Request) {
         let moved = self.snapshot.as_ref().filter(|s| s.time_s > 0.0);
-        let yarn = moved.map(|s| Arc::new(s.state.clone()));
+        let yarn = moved.zip(self.loaded.as_ref()).map(|(s, from)| Moved {
+            from: Arc::clone(from),
+            net: Arc::clone(&s.net),
+            surgery: s.surgery.clone(),
+            state: Arc::new(s.state.clone()),
+        });
         self.session.send(request, yarn);
     }
 
@@ -216,7 +222,7 @@ impl Editor {
     fn bounds(&self) -> Option<Bounds> {
         let mesh = match (self.stage, &self.view.project.fabric) {
             (Stage::Yarn, Some(fabric)) => {
-                return Bounds::of(self.yarn_state(fabric).position.iter().map(|p| p.as_vec3()));
+                return Bounds::of(self.yarn_now(fabric).1.position.iter().map(|p| p.as_vec3()));
             }
             (Stage::Stitches, Some(fabric)) => fabric.stitches.mesh(),
             _ => self.view.project.labelled.mesh(),
@@ -224,10 +230,14 @@ impl Editor {
         Bounds::of(mesh.positions().iter().map(|p| p.as_vec3()))
     }
 
-    pub(super) fn yarn_state(&self, fabric: &crate::project::Fabric) -> Arc<YarnState> {
+    /// The yarn where it is now, in the simulation or in the document.
+    pub(super) fn yarn_now(&self, fabric: &Fabric) -> (Arc<YarnNet>, Arc<YarnState>) {
+        let is_of = |net: &Arc<YarnNet>| Arc::ptr_eq(net, &fabric.net);
         match &self.snapshot {
-            Some(s) if s.state.fits(&fabric.net) => Arc::new(s.state.clone()),
-            _ => fabric.state(),
+            Some(s) if self.loaded.as_ref().is_some_and(is_of) && s.state.fits(&s.net) => {
+                (Arc::clone(&s.net), Arc::new(s.state.clone()))
+            }
+            _ => (Arc::clone(&fabric.net), fabric.state()),
         }
     }
 
@@ -328,7 +338,7 @@ impl Editor {
     /// The node nearest to a point of the yarn.
     pub(super) fn nearest_node(&self, point: DVec3) -> Option<(u32, DVec3)> {
         let fabric = self.view.project.fabric.as_ref()?;
-        let state = self.yarn_state(fabric);
+        let (_, state) = self.yarn_now(fabric);
         let nodes = state.position.iter().enumerate();
         nodes.min_by(|a, b| a.1.distance(point).total_cmp(&b.1.distance(point))).map(|(i, p)| (i as u32, *p))
     }

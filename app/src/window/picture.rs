@@ -193,10 +193,10 @@ impl Editor {
     /// neighbours leave no gap.
     fn loop_faces(&self) -> Faces {
         let Some(fabric) = &self.view.project.fabric else { return Faces::default() };
-        let state = self.yarn_state(fabric);
+        let (net, state) = self.yarn_now(fabric);
         let mesh = fabric.stitches.mesh();
         let mut nodes: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); mesh.face_count()];
-        for (node, position) in fabric.net.nodes.iter().zip(&state.position) {
+        for (node, position) in net.nodes.iter().zip(&state.position) {
             if let Some(face) = node.face {
                 nodes[face.index()].push([position.as_vec3(), node.position.as_vec3()]);
             }

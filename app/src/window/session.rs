@@ -11,6 +11,7 @@ use super::view::{Survey, View};
 use crate::charts;
 use crate::command::{Command, write_script};
 use crate::document::Document;
+use crate::fabric::Moved;
 use crate::files;
 use crate::open::open_any;
 use crate::project::Project;
@@ -25,7 +26,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use stitch_mesh::yarn_net::YarnState;
 
 /// How often work that goes on is looked at, for whether somebody has cancelled it.
 const LOOK: Duration = Duration::from_millis(10);
@@ -101,7 +101,7 @@ pub struct Preview {
 
 /// A running session. Dropping it lets the thread finish what it was asked and end.
 pub struct Session {
-    requests: Sender<(Request, Option<Arc<YarnState>>)>,
+    requests: Sender<(Request, Option<Moved>)>,
     latest: Arc<Mutex<(Arc<View>, Arc<Survey>)>>,
     waiting: Arc<AtomicUsize>,
     work: Arc<Mutex<Option<Work>>>,
@@ -121,7 +121,7 @@ impl Session {
     /// # Errors
     /// The system has no thread to give.
     pub fn spawn(project: Project, path: Option<PathBuf>, wake: Wake) -> std::io::Result<Self> {
-        let (requests, received) = channel::<(Request, Option<Arc<YarnState>>)>();
+        let (requests, received) = channel::<(Request, Option<Moved>)>();
         let work = Arc::new(Mutex::new(None));
         let mut worker = Worker {
             document: Document::new(project),
@@ -155,7 +155,7 @@ impl Session {
     }
 
     /// Asks for something. `yarn` is where the simulation has brought the yarn, if it is running.
-    pub fn send(&self, request: Request, yarn: Option<Arc<YarnState>>) {
+    pub fn send(&self, request: Request, yarn: Option<Moved>) {
         self.waiting.fetch_add(1, Ordering::Release);
         // The thread ends only when this sender is dropped.
         let _ = self.requests.send((request, yarn));
@@ -215,11 +215,11 @@ struct Worker {
 }
 
 impl Worker {
-    fn carry_out(&mut self, request: Request, yarn: Option<Arc<YarnState>>) -> Arc<View> {
+    fn carry_out(&mut self, request: Request, yarn: Option<Moved>) -> Arc<View> {
         let (name, since) = (request.doing(), Instant::now());
         *lock(&self.work) = Some(Work { name, since, preview: None, cancelled: Arc::default() });
         if let Some(yarn) = yarn {
-            self.document.set_state(yarn, None);
+            self.document.take_over(yarn);
         }
         let resets = |document: &Document| document.done().filter(|c| **c == Command::ResetYarn).count();
         let before = resets(&self.document);

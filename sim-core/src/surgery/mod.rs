@@ -64,8 +64,10 @@ pub enum SurgeryError {
 
 /// A net and a state after an operation.
 #[derive(Clone, Debug)]
-pub(crate) struct Operated {
+pub struct Operated {
+    /// The net.
     pub net: YarnNet,
+    /// The state that continues the one before.
     pub state: YarnState,
     /// Which visit each one was, and by how much its sliding coordinates have been moved [m]; none for new ends.
     pub was: Vec<Option<(VisitId, f64)>>,
@@ -74,28 +76,44 @@ pub(crate) struct Operated {
 }
 
 impl Surgery {
-    /// The net that a laid net has become. Positions of new ends are those they would have as laid.
+    /// Adds an operation on a net that is taken in so far.
+    pub fn add(&mut self, operation: Operation, taken_in: f64) {
+        if self.operations.is_empty() {
+            self.taken_in = taken_in;
+        }
+        self.operations.push(operation);
+    }
+
+    /// This surgery, and then another on the net that it has left.
+    pub fn then(mut self, next: &Self) -> Self {
+        next.operations.iter().for_each(|o| self.add(o.clone(), next.taken_in));
+        self
+    }
+
+    /// The net that a net has become, and which node each one of it is now, if it is still there. Positions are those that
+    /// nodes would have as laid.
     ///
     /// # Errors
     /// The operations belong to another net.
-    pub fn replay(&self, laid: &Arc<YarnNet>) -> Result<Arc<YarnNet>, SurgeryError> {
+    pub fn replay(&self, laid: &Arc<YarnNet>) -> Result<(Arc<YarnNet>, Vec<Option<NodeId>>), SurgeryError> {
         let mut state = laid.laid_state();
         state.taken_in = self.taken_in;
         let mut net = Arc::clone(laid);
+        let mut nodes: Vec<Option<NodeId>> = (0..laid.nodes.len()).map(|n| Some(NodeId::new(n))).collect();
         for operation in &self.operations {
             let done = operate(&net, &state, operation)?;
             (net, state) = (Arc::new(done.net), done.state);
+            nodes.iter_mut().for_each(|n| *n = n.and_then(|n| done.node[n.index()]));
         }
-        Ok(net)
+        Ok((net, nodes))
     }
 }
 
 /// Does `operation` on a net in a state.
-pub(crate) fn operate(
-    net: &YarnNet,
-    state: &YarnState,
-    operation: &Operation,
-) -> Result<Operated, SurgeryError> {
+///
+/// # Errors
+/// The net has no such visit, or nothing to cut there.
+pub fn operate(net: &YarnNet, state: &YarnState, operation: &Operation) -> Result<Operated, SurgeryError> {
     let settled = TakeIn::new(net).settle(net, state.taken_in);
     let net = settled.as_ref().unwrap_or(net);
     let known = |v: &VisitId| {

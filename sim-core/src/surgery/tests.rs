@@ -99,7 +99,8 @@ fn surgery_is_done_again_on_the_laid_net() {
         simulator.step().unwrap();
     }
     simulator.operate(Operation::Cut(VisitId(20))).unwrap();
-    let again = simulator.surgery().replay(&net).unwrap();
+    let (again, nodes) = simulator.surgery().replay(&net).unwrap();
+    assert!(nodes.iter().all(Option::is_some), "a cut takes no node away");
     assert_eq!(again.nodes.len(), simulator.net().nodes.len());
     assert_eq!(again.yarns.len(), simulator.net().yarns.len());
     check(&again, simulator.state());
