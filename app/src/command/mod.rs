@@ -248,6 +248,13 @@ pub enum Command {
         /// All of it.
         scene: Scene,
     },
+    /// Holds some stitches where they are, by a spring at each node.
+    Hold {
+        /// The faces.
+        faces: Vec<u32>,
+    },
+    /// Lets go of everything that is held.
+    LetGo,
     /// Puts the yarn back to where it was laid.
     ResetYarn,
     /// Makes the stitches as even as they can be, and lays the yarn again.
@@ -338,6 +345,8 @@ impl Command {
                 scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
                 project.scene = scene.clone();
             }
+            Self::Hold { faces } => pins::hold(project, faces)?,
+            Self::LetGo => project.scene.let_go(),
             Self::ResetYarn => {
                 if let Some(fabric) = &mut project.fabric {
                     fabric.state = None;

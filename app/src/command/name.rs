@@ -76,6 +76,8 @@ impl Command {
             Self::UsePreset { color: Some(color), preset } => format!("{} for {color}", preset.name()),
             Self::ClearMaterial { color } => format!("Yarn {color} as the rest"),
             Self::SetScene { .. } => "Change scene".into(),
+            Self::Hold { faces } => format!("Hold {}", many(faces.len(), "stitch")),
+            Self::LetGo => "Let go".into(),
             Self::ResetYarn => "Lay yarn anew".into(),
             Self::RelaxMesh { surface: true, .. } => "Relax stitches".into(),
             Self::RelaxMesh { surface: false, .. } => "Relax stitches freely".into(),
