@@ -1,10 +1,11 @@
 //! Pictures of a project, stage by stage: what the renderer is given.
 
 use crate::project::Project;
+use crate::solids::solids;
 use anyhow::Result;
-use glam::{DVec3, Vec3};
-use render::{Drawing, Faces, Lines, Polygon, Segment, Solid, Solids, palette};
-use sim_core::{Body, Scene, curves};
+use glam::DVec3;
+use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
+use sim_core::curves;
 use std::collections::HashMap;
 use stitch_mesh::ids::{EdgeId, FaceId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh, Row};
@@ -55,7 +56,9 @@ pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Resul
         Stage::Yarn => {
             let fabric = project.fabric()?;
             let yarn = curves(&fabric.net, &fabric.state(), &project.materials);
-            Drawing { yarn, solids: solids(&project.scene), ..Drawing::default() }
+            // The bodies are where the simulation has left them.
+            let time_s = fabric.facts.as_ref().map_or(0.0, |f| f.time_s);
+            Drawing { yarn, solids: solids(&project.scene, time_s), ..Drawing::default() }
         }
     })
 }
@@ -158,17 +161,4 @@ fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
         lines: Lines { segments: lines.collect() },
         ..Drawing::default()
     }
-}
-
-/// The bodies of a scene.
-pub fn solids(scene: &Scene) -> Solids {
-    let v = |p: DVec3| -> Vec3 { p.as_vec3() };
-    let solid = |body: &Body| match *body {
-        Body::Ground { height, .. } => Solid::Ground { height: height as f32 },
-        Body::Sphere { center, radius, .. } => Solid::Sphere { center: v(center), radius: radius as f32 },
-        Body::Capsule { from, to, radius, .. } => {
-            Solid::Capsule { ends: [v(from), v(to)], radius: radius as f32 }
-        }
-    };
-    Solids { solids: scene.bodies.iter().map(solid).collect() }
 }

@@ -6,7 +6,7 @@ use crate::project::Project;
 use crate::relax::{MeshStrain, mesh_strain};
 use glam::DVec3;
 use serde::Serialize;
-use sim_core::Facts;
+use sim_core::{Facts, HoldFact};
 use std::collections::BTreeMap;
 use stitch_mesh::ids::{FaceId, VisitId};
 
@@ -181,6 +181,14 @@ impl std::fmt::Display for Inspection {
                 sim.min_yarn_distance_over_diameter,
                 sim.max_penetration_mm
             )?;
+            for HoldFact { what, force_n } in &sim.holds {
+                let [x, y, z] = (1e3 * *force_n).to_array();
+                write!(
+                    f,
+                    "\n{what}: {:.2} mN on the fabric ({x:.2}, {y:.2}, {z:.2})",
+                    1e3 * force_n.length()
+                )?;
+            }
         }
         Ok(())
     }

@@ -31,5 +31,6 @@ pub mod project;
 pub mod relax;
 pub mod scenes;
 pub mod sheet;
+pub mod solids;
 pub mod window;
 pub mod written;

@@ -41,7 +41,7 @@ pub fn relax_mesh(
     if project.materials.base == Material::for_loop_width(mean_width(before)) {
         after.materials = project.materials.refitted(mean_width(&stitches));
     }
-    after.scene.pins.clear(); // they hold nodes where these are no more
+    after.scene.let_go(); // pins and clamps hold nodes where these are no more
     after.fabric = Some(Fabric::new(stitches));
     Ok(after)
 }

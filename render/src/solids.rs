@@ -12,13 +12,15 @@ const COLOR: [f32; 3] = [0.45, 0.45, 0.46];
 const AROUND: usize = 64;
 /// Rings from a pole to the equator.
 const RINGS: usize = 16;
+/// Cosine of the angle under which a corner of a mesh is shaded round.
+const ROUND: f32 = 0.85;
 /// The ground, lit, is about as light as the background, which it fades into.
 const GROUND_COLOR: [f32; 3] = [0.62, 0.605, 0.58];
 /// Radii [m] of the disc that stands for the ground, and its opacity there.
 const GROUND_RINGS: [(f32, f32); 4] = [(0.0, 1.0), (0.6, 1.0), (1.2, 0.4), (2.0, 0.0)];
 
 /// A body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
     /// A ball.
     Sphere {
@@ -33,6 +35,13 @@ pub enum Solid {
         ends: [Vec3; 2],
         /// Its radius [m].
         radius: f32,
+    },
+    /// Triangles that face outwards; where they meet at a blunt angle they are shaded round.
+    Mesh {
+        /// Corners [m].
+        positions: Vec<Vec3>,
+        /// Three corners each.
+        triangles: Vec<[u32; 3]>,
     },
     /// The ground under the origin, level; it fades into the background some way out, and is not seen from below.
     Ground {
@@ -60,11 +69,14 @@ pub(crate) struct Vertex {
 impl Solids {
     /// The box around all bodies but the ground.
     pub fn bounds(&self) -> Option<Bounds> {
-        let bounds = self.solids.iter().filter_map(|solid| match *solid {
-            Solid::Sphere { center, radius } => Some(Bounds { min: center - radius, max: center + radius }),
-            Solid::Capsule { ends: [a, b], radius } => {
-                Some(Bounds { min: a.min(b) - radius, max: a.max(b) + radius })
+        let bounds = self.solids.iter().filter_map(|solid| match solid {
+            Solid::Sphere { center, radius } => {
+                Some(Bounds { min: *center - *radius, max: *center + *radius })
             }
+            Solid::Capsule { ends: [a, b], radius } => {
+                Some(Bounds { min: a.min(*b) - *radius, max: a.max(*b) + *radius })
+            }
+            Solid::Mesh { positions, .. } => Bounds::of(positions.iter().copied()),
             Solid::Ground { .. } => None,
         });
         bounds.reduce(Bounds::union)
@@ -74,10 +86,11 @@ impl Solids {
     pub(crate) fn vertices(&self) -> Vec<Vertex> {
         let mut out = Vec::new();
         for solid in &self.solids {
-            match *solid {
-                Solid::Sphere { center, radius } => capsule([center, center], radius, &mut out),
-                Solid::Capsule { ends, radius } => capsule(ends, radius, &mut out),
-                Solid::Ground { height } => ground(height, &mut out),
+            match solid {
+                Solid::Sphere { center, radius } => capsule([*center; 2], *radius, &mut out),
+                Solid::Capsule { ends, radius } => capsule(*ends, *radius, &mut out),
+                Solid::Mesh { positions, triangles } => mesh(positions, triangles, &mut out),
+                Solid::Ground { height } => ground(*height, &mut out),
             }
         }
         out
@@ -108,6 +121,27 @@ fn capsule([a, b]: [Vec3; 2], radius: f32, out: &mut Vec<Vertex>) {
         for j in 0..AROUND {
             let [p, q, r, s] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
             out.extend([p, q, r, p, r, s]);
+        }
+    }
+}
+
+/// A corner has the mean normal of the triangles around it, unless its own is far from that, as at the edges of a box.
+fn mesh(positions: &[Vec3], triangles: &[[u32; 3]], out: &mut Vec<Vertex>) {
+    let corners = |t: &[u32; 3]| t.map(|v| positions[v as usize]);
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = corners(t);
+        (b - a).cross(c - a)
+    };
+    let mut means = vec![Vec3::ZERO; positions.len()];
+    for t in triangles {
+        t.iter().for_each(|v| means[*v as usize] += area(t));
+    }
+    for t in triangles {
+        let own = area(t).normalize_or(Vec3::Y);
+        for v in t {
+            let mean = means[*v as usize].normalize_or(own);
+            let normal = if mean.dot(own) > ROUND { mean } else { own };
+            out.push(vertex(positions[*v as usize], normal));
         }
     }
 }
@@ -146,6 +180,18 @@ mod tests {
                 assert!(face.dot(corner.normal) > -1e-7);
             }
         }
+    }
+
+    #[test]
+    fn edges_of_a_mesh_stay_sharp_and_bulges_round() {
+        let apex = |height: f32| {
+            let base = [Vec3::X, Vec3::NEG_Z, Vec3::NEG_X, Vec3::Z];
+            let positions = [&base[..], &[Vec3::Y * height]].concat();
+            let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+            let solids = Solids { solids: vec![Solid::Mesh { positions, triangles }] };
+            solids.vertices()[2].normal
+        };
+        assert!(apex(0.1).dot(Vec3::Y) > 0.999 && apex(2.0).dot(Vec3::Y) < 0.5);
     }
 
     #[test]

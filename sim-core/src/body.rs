@@ -1,23 +1,12 @@
-//! Bodies that the fabric collides with.
-//!
-//! # Theory
-//! A node keeps the gap g(x) = signed distance − clearance, the clearance being the half thickness of the fabric there:
-//! - energy V = k/2 g² while g < 0 [J];
-//! - gradient k g n, n = ∇g, stiffness k n nᵀ (the curvature of the surface is left out);
-//! - Coulomb friction as a drag −c v_t along the surface with c = min(m/h, μ N/|v_t|), N = −k g: full sticking up to the
-//!   friction cone, the force of the cone beyond.
-//!
-//! # Practice
-//! A contact is taken up in the step whose free flight would pass the surface, not in the step after, so fabric that falls
-//! lands on the body rather than in it. Its spring then draws the node to the surface: the one step of a fast
-//! approach in which it may pull is the step that stops it.
+//! Bodies that the fabric collides with, and how they move. What happens in a collision is in `body_contact.rs`.
 
-use crate::local::{Element, Local, point, put};
-use glam::DVec3;
+use crate::closed_mesh::ClosedMesh;
+use crate::motion::{Motion, Pose};
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A resting body.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Body {
     /// Everything under a height.
@@ -47,122 +36,210 @@ pub enum Body {
         /// Coefficient of friction.
         friction: f64,
     },
+    /// A box.
+    Box {
+        /// Centre [m].
+        center: DVec3,
+        /// Lengths of its sides [m].
+        size: DVec3,
+        /// How it is turned about its centre: a vector along the axis, as long as the angle [rad].
+        turn: DVec3,
+        /// Coefficient of friction.
+        friction: f64,
+    },
+    /// A closed mesh.
+    Mesh {
+        /// The mesh.
+        mesh: ClosedMesh,
+        /// Coefficient of friction.
+        friction: f64,
+    },
+    /// A body that moves.
+    Moving {
+        /// The body as it is before it moves.
+        body: Box<Body>,
+        /// How it moves.
+        motion: Motion,
+    },
 }
 
 impl Body {
-    /// Signed distance of `x` from the surface, negative inside [m], and the unit normal there.
+    /// Signed distance of `x` from the surface before it moves, negative inside [m], and the unit normal there.
     pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
         let around = |axis: DVec3, radius: f64| {
             let r = x - axis;
             (r.length() - radius, r.try_normalize().unwrap_or(DVec3::Y))
         };
-        match *self {
+        match self {
             Self::Ground { height, .. } => (x.y - height, DVec3::Y),
-            Self::Sphere { center, radius, .. } => around(center, radius),
+            Self::Sphere { center, radius, .. } => around(*center, *radius),
             Self::Capsule { from, to, radius, .. } => {
                 let axis = to - from;
                 let t = ((x - from).dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0);
-                around(from + t * axis, radius)
+                around(from + t * axis, *radius)
             }
+            Self::Box { center, size, turn, .. } => {
+                let turn = DQuat::from_scaled_axis(*turn);
+                let (distance, normal) = of_box(turn.inverse() * (x - center), 0.5 * *size);
+                (distance, turn * normal)
+            }
+            Self::Mesh { mesh, .. } => mesh.distance(x),
+            Self::Moving { body, .. } => body.distance(x),
         }
     }
 
     /// Coefficient of friction.
     pub fn friction(&self) -> f64 {
-        match *self {
+        match self {
             Self::Ground { friction, .. }
             | Self::Sphere { friction, .. }
-            | Self::Capsule { friction, .. } => friction,
+            | Self::Capsule { friction, .. }
+            | Self::Box { friction, .. }
+            | Self::Mesh { friction, .. } => *friction,
+            Self::Moving { body, .. } => body.friction(),
+        }
+    }
+
+    /// What it is called.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Ground { .. } => "ground",
+            Self::Sphere { .. } => "sphere",
+            Self::Capsule { .. } => "capsule",
+            Self::Box { .. } => "box",
+            Self::Mesh { .. } => "mesh",
+            Self::Moving { body, .. } => body.kind(),
+        }
+    }
+
+    /// Where it is at a time, seen from where it was before it moved.
+    pub fn pose(&self, time_s: f64) -> Pose {
+        match self {
+            Self::Moving { motion, .. } => motion.pose(time_s),
+            _ => Pose::IDENTITY,
+        }
+    }
+
+    /// How it moves, if it does.
+    pub fn motion(&self) -> Option<&Motion> {
+        match self {
+            Self::Moving { motion, .. } => Some(motion),
+            _ => None,
         }
     }
 
     /// Whether every number is finite, and sizes and friction are not negative.
     pub fn is_valid(&self) -> bool {
-        let (places, size) = match *self {
-            Self::Ground { height, .. } => ([DVec3::splat(height); 2], 0.0),
-            Self::Sphere { center, radius, .. } => ([center; 2], radius),
-            Self::Capsule { from, to, radius, .. } => ([from, to], radius),
+        let (places, size) = match self {
+            Self::Ground { height, .. } => ([DVec3::splat(*height); 3], 0.0),
+            Self::Sphere { center, radius, .. } => ([*center; 3], *radius),
+            Self::Capsule { from, to, radius, .. } => ([*from, *to, *to], *radius),
+            Self::Box { center, size, turn, .. } => ([*center, *turn, *size], size.min_element()),
+            Self::Mesh { .. } => ([DVec3::ZERO; 3], 0.0),
+            // One motion a body: its keys can say all that two could.
+            Self::Moving { body, motion } => {
+                return body.is_valid() && motion.is_valid() && body.motion().is_none();
+            }
         };
         let natural = |x: f64| x.is_finite() && x >= 0.0;
         places.iter().all(|p| p.is_finite()) && natural(size) && natural(self.friction())
     }
 }
 
-/// Contact of a node with a body over (x), taken up whatever the sign of the gap; see the module.
+/// Distance and normal of a box about the origin with these half sides.
+fn of_box(x: DVec3, half: DVec3) -> (f64, DVec3) {
+    let beyond = x.abs() - half;
+    let outside = beyond.max(DVec3::ZERO);
+    if outside != DVec3::ZERO {
+        let distance = outside.length();
+        return (distance, outside / distance * x.signum());
+    }
+    // Inside, the nearest face.
+    let depth = beyond.max_element();
+    let axis = (0..3).find(|i| beyond[*i] == depth).unwrap_or_default();
+    (depth, DVec3::AXES[axis] * x[axis].signum())
+}
+
+/// A body during a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BodyContact {
-    /// The body.
-    pub body: Body,
-    /// Distance that the node keeps from the surface [m].
-    pub clearance: f64,
-    /// k [N/m].
-    pub stiffness: f64,
+pub(crate) struct Placed<'a> {
+    body: &'a Body,
+    /// Where it was when the step began, and is when it ends.
+    poses: [Pose; 2],
+    /// Length of the step [s].
+    step: f64,
 }
 
-impl BodyContact {
-    /// g and n.
-    pub fn gap(&self, x: DVec3) -> (f64, DVec3) {
-        let (distance, normal) = self.body.distance(x);
-        (distance - self.clearance, normal)
+impl<'a> Placed<'a> {
+    /// The body in the step of `step` from `time_s` on [s].
+    pub fn new(body: &'a Body, time_s: f64, step: f64) -> Self {
+        Self { body, poses: [body.pose(time_s), body.pose(time_s + step)], step }
     }
 
-    /// c, drag along the surface for a node of `mass` that moves with `v` in a step `h` [kg/s].
-    pub fn drag(&self, x: DVec3, v: DVec3, mass: f64, h: f64) -> f64 {
-        let (gap, normal) = self.gap(x);
-        let press = self.body.friction() * self.stiffness * (-gap).max(0.0);
-        let slip = (v - v.dot(normal) * normal).length();
-        // A hundred masses per step stop a node as good as wholly; more would only spoil the matrix.
-        (press / slip.max(1e-12)).min(100.0 * mass / h)
-    }
-}
-
-impl Element<3> for BodyContact {
-    fn energy(&self, q: &[f64; 3]) -> f64 {
-        0.5 * self.stiffness * self.gap(point(q, 0)).0.powi(2)
+    /// Signed distance of `x` from the surface at the end of the step [m], and the unit normal there.
+    pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
+        let (distance, normal) = self.body.distance(self.poses[1].undo(x));
+        (distance, self.poses[1].turn(normal))
     }
 
-    fn expand(&self, q: &[f64; 3]) -> Local<3> {
-        let (gap, normal) = self.gap(point(q, 0));
-        let mut local = Local { energy: self.energy(q), ..Local::zero() };
-        put(&mut local.gradient, 0, self.stiffness * gap * normal);
-        local.add_outer(self.stiffness, &normal.to_array());
-        local
+    /// Velocity of the point of the body that is at `x` when the step ends [m/s].
+    pub fn velocity(&self, x: DVec3) -> DVec3 {
+        if self.body.motion().is_none() {
+            return DVec3::ZERO;
+        }
+        (x - self.poses[0].apply(self.poses[1].undo(x))) / self.step
+    }
+
+    /// Coefficient of friction.
+    pub fn friction(&self) -> f64 {
+        self.body.friction()
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
-    use crate::testing::finite_difference::{check_element, samples};
+    use crate::closed_mesh::tests::cuboid;
+    use crate::motion::Key;
+    use crate::testing::finite_difference::samples;
 
-    fn bodies() -> [Body; 3] {
+    const FRICTION: f64 = 0.3;
+
+    pub fn bodies() -> [Body; 5] {
+        let turn = DVec3::new(0.3, -0.2, 0.5);
+        let size = DVec3::new(0.6, 0.4, 0.5);
         [
-            Body::Ground { height: 0.1, friction: 0.3 },
-            Body::Sphere { center: DVec3::new(0.1, 0.2, 0.3), radius: 0.4, friction: 0.3 },
-            Body::Capsule { from: DVec3::ZERO, to: DVec3::new(0.3, 0.5, 0.1), radius: 0.05, friction: 0.3 },
+            Body::Ground { height: 0.1, friction: FRICTION },
+            Body::Sphere { center: DVec3::new(0.1, 0.2, 0.3), radius: 0.4, friction: FRICTION },
+            Body::Capsule {
+                from: DVec3::ZERO,
+                to: DVec3::new(0.3, 0.5, 0.1),
+                radius: 0.05,
+                friction: FRICTION,
+            },
+            Body::Box { center: DVec3::ONE * 0.1, size, turn, friction: FRICTION },
+            Body::Mesh { mesh: ClosedMesh::new(cuboid(size)).unwrap(), friction: FRICTION },
         ]
     }
 
     #[test]
-    fn derivatives() {
-        for body in bodies() {
-            for q in samples::<3>(30) {
-                check_element(&BodyContact { body, clearance: 0.01, stiffness: 10.0 }, &q);
-            }
-        }
-    }
-
-    #[test]
     fn distance_is_signed() {
-        let [ground, sphere, capsule] = bodies();
+        let [ground, sphere, capsule, ..] = bodies();
         assert!((ground.distance(DVec3::new(3.0, 0.5, 0.0)).0 - 0.4).abs() < 1e-15);
         assert!((sphere.distance(DVec3::new(0.1, 0.2, 0.3)).0 + 0.4).abs() < 1e-15);
         assert!((capsule.distance(DVec3::new(0.0, -1.0, 0.0)).0 - 0.95).abs() < 1e-15);
+        let size = DVec3::new(2.0, 4.0, 6.0);
+        let cube = Body::Box { center: DVec3::X, size, turn: DVec3::ZERO, friction: 0.0 };
+        assert_eq!(cube.distance(DVec3::new(1.0, 1.5, 1.0)), (-0.5, DVec3::Y));
+        assert_eq!(cube.distance(DVec3::new(-3.0, 0.0, 0.0)), (3.0, DVec3::NEG_X));
+        let (corner, normal) = cube.distance(DVec3::new(3.0, 3.0, 4.0));
+        assert!((corner - 3f64.sqrt()).abs() < 1e-15 && normal.distance(DVec3::ONE / 3f64.sqrt()) < 1e-15);
     }
 
     #[test]
     fn centre_of_a_body_is_finite() {
-        for (body, x) in bodies().into_iter().zip([DVec3::ZERO, DVec3::new(0.1, 0.2, 0.3), DVec3::ZERO]) {
+        let centres = [DVec3::ZERO, DVec3::new(0.1, 0.2, 0.3), DVec3::ZERO, DVec3::ONE * 0.1, DVec3::ZERO];
+        for (body, x) in bodies().into_iter().zip(centres) {
             assert!(body.distance(x).1.is_normalized());
         }
         let point = Body::Capsule { from: DVec3::X, to: DVec3::X, radius: 0.0, friction: 0.0 };
@@ -170,10 +247,33 @@ mod tests {
     }
 
     #[test]
-    fn drag_stays_in_the_friction_cone() {
-        let contact = BodyContact { body: bodies()[0], clearance: 0.0, stiffness: 10.0 };
-        let (x, v) = (DVec3::new(0.0, 0.099, 0.0), DVec3::new(3.0, -1.0, 4.0));
-        assert!((contact.drag(x, v, 1e-3, 1e-3) * 5.0 - 0.3 * 10.0 * 1e-3).abs() < 1e-12);
-        assert_eq!(contact.drag(x, DVec3::ZERO, 1e-8, 1e-3), 100.0 * 1e-8 / 1e-3);
+    fn moving_bodies_take_their_surface_along() {
+        let keys = [(0.0, DVec3::ZERO, DVec3::ZERO), (1.0, DVec3::new(0.5, -0.2, 0.1), DVec3::Z * 2.0)];
+        let keys = keys.map(|(time_s, shift, turn)| Key { time_s, shift, turn }).to_vec();
+        let motion = Motion { pivot: DVec3::new(0.2, 0.0, 0.0), keys, repeats: false };
+        for body in bodies() {
+            let moving = Body::Moving { body: Box::new(body.clone()), motion: motion.clone() };
+            let placed = Placed::new(&moving, 0.4, 1e-3);
+            for x in samples::<3>(20).map(DVec3::from_array) {
+                let resting = motion.pose(0.401).undo(x);
+                assert!((placed.distance(x).0 - body.distance(resting).0).abs() < 1e-12);
+                let before = motion.pose(0.4).apply(resting);
+                assert!(((x - before) / 1e-3 - placed.velocity(x)).length() < 1e-9);
+                // A turn of 2 rad/s about the pivot, which itself moves.
+                let pivot = motion.pose(0.401).apply(motion.pivot);
+                let expected = DVec3::new(0.5, -0.2, 0.1) + DVec3::Z.cross(x - pivot) * 2.0;
+                assert!(placed.velocity(x).distance(expected) < 5e-3, "{}", placed.velocity(x));
+            }
+        }
+    }
+
+    #[test]
+    fn bodies_without_sense_are_refused() {
+        assert!(bodies().iter().all(Body::is_valid));
+        let flat = |size: DVec3| Body::Box { center: DVec3::ZERO, size, turn: DVec3::ZERO, friction: 0.3 };
+        assert!(
+            !flat(DVec3::new(1.0, -1.0, 1.0)).is_valid() && !flat(DVec3::splat(f64::INFINITY)).is_valid()
+        );
+        assert!(!Body::Sphere { center: DVec3::ZERO, radius: -1.0, friction: 0.3 }.is_valid());
     }
 }

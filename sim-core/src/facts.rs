@@ -4,8 +4,9 @@ use crate::clearance::least_distance;
 use crate::curves::curves;
 use crate::materials::Materials;
 use crate::model::Model;
-use crate::scene::Scene;
+use crate::scene::{Forces, Scene};
 use crate::step::clearances;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use stitch_mesh::yarn_net::YarnState;
 
@@ -28,17 +29,44 @@ pub struct Facts {
     pub max_penetration_mm: f64,
     /// Steps thrown away and taken again with half the time step.
     pub rejected_steps: u64,
+    /// What holds the fabric, or touches it, and how hard.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub holds: Vec<HoldFact>,
+}
+
+/// The force of one thing in a scene on the fabric.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HoldFact {
+    /// What it is: the name of a clamp, "pins" for all of them, a body by kind and number.
+    pub what: String,
+    /// The force [N].
+    pub force_n: DVec3,
+}
+
+/// The forces in words.
+pub(crate) fn holds(scene: &Scene, forces: &Forces) -> Vec<HoldFact> {
+    let pins = (!scene.pins.is_empty()).then(|| ("pins".to_owned(), forces.pins.iter().sum::<DVec3>()));
+    let clamps = scene.clamps.iter().zip(&forces.clamps).map(|(c, f)| (c.name.clone(), *f));
+    let bodies = scene.bodies.iter().zip(&forces.bodies).enumerate();
+    let bodies = bodies.map(|(i, (b, f))| (format!("{} {i}", b.kind()), *f));
+    let all = pins.into_iter().chain(clamps).chain(bodies);
+    all.map(|(what, force_n)| HoldFact { what, force_n }).collect()
 }
 
 /// The figures that follow from a state; the others stay empty.
-pub(crate) fn measure(model: &Model, materials: &Materials, scene: &Scene, state: &YarnState) -> Facts {
+pub(crate) fn measure(
+    model: &Model,
+    materials: &Materials,
+    (scene, time_s): (&Scene, f64),
+    state: &YarnState,
+) -> Facts {
     let strain = |q: [f64; 8]| {
         let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
         r.length() / (q[7] - q[3]) - 1.0
     };
     let strains = model.segments.iter().map(|s| strain(s.stencil.coordinates(state)));
-    let depth = |(x, clearance): (&glam::DVec3, f64)| {
-        let gaps = scene.bodies.iter().map(|b| clearance - b.distance(*x).0);
+    let depth = |(x, clearance): (&DVec3, f64)| {
+        let gaps = scene.bodies.iter().map(|b| clearance - b.distance(b.pose(time_s).undo(*x)).0);
         gaps.fold(0.0, f64::max)
     };
     let deepest = state.position.iter().zip(clearances(model, materials)).map(depth).fold(0.0, f64::max);

@@ -5,6 +5,14 @@
 
 use crate::local::{Element, Local, point, put};
 use crate::scene::Pin;
+use glam::DVec3;
+
+impl Pin {
+    /// Its force on a node at `x` [N].
+    pub fn force(&self, x: DVec3) -> DVec3 {
+        self.stiffness * (self.target - x)
+    }
+}
 
 impl Element<3> for Pin {
     fn energy(&self, q: &[f64; 3]) -> f64 {
@@ -13,7 +21,7 @@ impl Element<3> for Pin {
 
     fn expand(&self, q: &[f64; 3]) -> Local<3> {
         let mut local = Local { energy: self.energy(q), ..Local::zero() };
-        put(&mut local.gradient, 0, self.stiffness * (point(q, 0) - self.target));
+        put(&mut local.gradient, 0, -self.force(point(q, 0)));
         for i in 0..3 {
             local.hessian[i][i] = self.stiffness;
         }
@@ -25,7 +33,6 @@ impl Element<3> for Pin {
 mod tests {
     use super::*;
     use crate::testing::finite_difference::{check_element, check_exact_hessian, samples};
-    use glam::DVec3;
 
     #[test]
     fn derivatives() {

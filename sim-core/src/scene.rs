@@ -1,6 +1,7 @@
-//! What surrounds the fabric: gravity, air, bodies, pins and the time step. Y is up.
+//! What surrounds the fabric: gravity, air, bodies, pins, clamps and the time step. Y is up.
 
 use crate::body::Body;
+use crate::motion::Motion;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use stitch_mesh::ids::NodeId;
@@ -16,7 +17,47 @@ pub struct Pin {
     pub stiffness: f64,
 }
 
-/// Gravity, air, bodies, pins and the time step.
+/// Nodes held by springs to a frame that may move: a row on a needle, an edge in a jaw.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Clamp {
+    /// What it is called.
+    #[serde(default)]
+    pub name: String,
+    /// The nodes, each with where its spring pulls it before the clamp moves [m].
+    pub nodes: Vec<(u32, DVec3)>,
+    /// Stiffness of each spring [N/m].
+    pub stiffness: f64,
+    /// How it moves.
+    #[serde(default)]
+    pub motion: Motion,
+}
+
+impl Clamp {
+    /// Its springs at a time [s].
+    pub fn pins(&self, time_s: f64) -> impl Iterator<Item = Pin> + '_ {
+        let pose = self.motion.pose(time_s);
+        let stiffness = self.stiffness;
+        self.nodes.iter().map(move |(node, target)| Pin {
+            node: *node,
+            target: pose.apply(*target),
+            stiffness,
+        })
+    }
+}
+
+/// What holds and touches the fabric, and with what force [N].
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Forces {
+    /// Of each pin on the fabric.
+    pub pins: Vec<DVec3>,
+    /// Of each clamp, all its springs together.
+    pub clamps: Vec<DVec3>,
+    /// Of each body, pressure and friction together, in the last step.
+    pub bodies: Vec<DVec3>,
+}
+
+/// Gravity, air, bodies, pins, clamps and the time step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scene {
@@ -28,6 +69,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// Pinned nodes.
     pub pins: Vec<Pin>,
+    /// Clamps.
+    pub clamps: Vec<Clamp>,
     /// h, the time step aimed at [s]; steps that go wrong are taken in smaller ones.
     pub time_step: f64,
 }
@@ -39,6 +82,7 @@ impl Default for Scene {
             air: 0.0,
             bodies: Vec::new(),
             pins: Vec::new(),
+            clamps: Vec::new(),
             time_step: 5e-3,
         }
     }
@@ -57,11 +101,28 @@ pub enum SceneError {
     #[error("scene: the density of the air is {0} kg/m³, and must be at least 0")]
     Air(f64),
     /// A body with a number that makes no sense.
-    #[error("scene: body {0} has a number that is not finite or a negative one for a size or friction")]
+    #[error(
+        "scene: body {0} has a number that is not finite, a negative one for a size or friction, or keys that are out of order"
+    )]
     Body(usize),
     /// A pin with a number that makes no sense.
     #[error("scene: pin {0} has a number that is not finite or a negative stiffness")]
     Pin(usize),
+    /// A clamp with a number that makes no sense, or a motion.
+    #[error(
+        "scene: clamp {0} has a number that is not finite, a negative stiffness, or keys that are out of order"
+    )]
+    Clamp(String),
+    /// A clamp on a node that the net does not have.
+    #[error("scene: clamp {clamp} holds node {node} of a net of {nodes} nodes")]
+    ClampNode {
+        /// The clamp.
+        clamp: String,
+        /// The node it names.
+        node: u32,
+        /// How many there are.
+        nodes: usize,
+    },
     /// A pin on a node that the net does not have.
     #[error("scene: pin {pin} holds node {node} of a net of {nodes} nodes")]
     PinNode {
@@ -80,13 +141,17 @@ impl Scene {
         Self { gravity: DVec3::ZERO, ..Self::default() }
     }
 
-    /// Follows nodes to what they have become. Pins on nodes that are gone go too.
+    /// Follows nodes to what they have become. Nodes that are gone are held no longer.
     pub fn follow(&mut self, nodes: &[Option<NodeId>]) {
-        self.pins.retain_mut(|pin| {
-            let now = nodes.get(pin.node as usize).copied().flatten();
-            pin.node = now.map_or(pin.node, |n| n.0);
-            now.is_some()
-        });
+        let follow = |node: &mut u32| match nodes.get(*node as usize).copied().flatten() {
+            Some(now) => {
+                *node = now.0;
+                true
+            }
+            None => false,
+        };
+        self.pins.retain_mut(|pin| follow(&mut pin.node));
+        self.clamps.iter_mut().for_each(|clamp| clamp.nodes.retain_mut(|(node, _)| follow(node)));
     }
 
     /// Whether this scene can be simulated with a net of `nodes` nodes.
@@ -111,6 +176,31 @@ impl Scene {
                 return Err(SceneError::PinNode { pin, node: p.node, nodes });
             }
         }
+        for (i, c) in self.clamps.iter().enumerate() {
+            let clamp = if c.name.is_empty() { i.to_string() } else { format!("'{}'", c.name) };
+            let targets_are_finite = c.nodes.iter().all(|(_, target)| target.is_finite());
+            if !(c.stiffness.is_finite() && c.stiffness >= 0.0 && targets_are_finite && c.motion.is_valid()) {
+                return Err(SceneError::Clamp(clamp));
+            }
+            if let Some((node, _)) = c.nodes.iter().find(|(node, _)| *node as usize >= nodes) {
+                return Err(SceneError::ClampNode { clamp, node: *node, nodes });
+            }
+        }
         Ok(())
+    }
+
+    /// Lets go of the fabric: no pins, no clamps.
+    pub fn let_go(&mut self) {
+        self.pins.clear();
+        self.clamps.clear();
+    }
+
+    /// Whether everything in `other` moves as it does here, so that time may go on from one to the other.
+    pub fn moves_like(&self, other: &Self) -> bool {
+        fn motions(scene: &Scene) -> impl Iterator<Item = Option<&Motion>> {
+            let clamps = scene.clamps.iter().map(|c| Some(&c.motion));
+            scene.bodies.iter().map(Body::motion).chain(clamps)
+        }
+        motions(self).eq(motions(other))
     }
 }

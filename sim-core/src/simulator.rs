@@ -1,18 +1,19 @@
 //! The simulator: a net, its state, and time going by.
 
 use crate::energies::Energies;
-use crate::facts::{self, Facts};
+use crate::facts::{self, Facts, HoldFact};
 use crate::friction::Anchors;
 use crate::local::LEAST_LENGTH;
 use crate::material::MaterialError;
 use crate::materials::Materials;
 use crate::model::{Model, NetError};
 use crate::noise::unit_hash;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Forces, Scene, SceneError};
 use crate::solver::cholesky::SolveError;
 use crate::step::{Rejection, Stepper, Stuck};
 use crate::surgery::slip::slipped;
 use crate::surgery::{self, Operation, Surgery, SurgeryError};
+use crate::surroundings::clamp_force;
 use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -131,6 +132,8 @@ pub struct Simulator {
     /// Step to try next [s].
     step: f64,
     time: f64,
+    /// Time since the scene began [s].
+    scene_time: f64,
     steps: u64,
     rejected: u64,
     surgery: Surgery,
@@ -166,6 +169,7 @@ impl Simulator {
             now: Stuck { state, anchors },
             step,
             time: 0.0,
+            scene_time: 0.0,
             steps: 0,
             rejected: 0,
             surgery: Surgery::default(),
@@ -181,11 +185,12 @@ impl Simulator {
         let Stepper { model, stacks, .. } = &mut self.stepper;
         self.take_in.step(model, state, (stacks, anchors), self.step);
         loop {
-            match self.stepper.step(&self.now, &self.scene, self.step) {
+            match self.stepper.step(&self.now, &self.scene, self.scene_time, self.step) {
                 Ok(next) => {
                     self.now = next;
                     let report = StepReport { time_step: self.step, rejected };
                     self.time += self.step;
+                    self.scene_time += self.step;
                     self.steps += 1;
                     self.step = self.scene.time_step.min(2.0 * self.step);
                     while let Some(operation) = slipped(self.net(), self.state(), &self.materials) {
@@ -290,10 +295,42 @@ impl Simulator {
         self.time
     }
 
-    /// Changes gravity, bodies, pins or time step; refused as a whole if anything in it makes no sense.
+    /// Time since the scene began, by which bodies and clamps move [s].
+    pub fn scene_time_s(&self) -> f64 {
+        self.scene_time
+    }
+
+    /// Goes on at a time of the scene: for a fabric that was edited while things moved [s].
+    pub fn resume_at(&mut self, scene_time_s: f64) {
+        self.scene_time = scene_time_s;
+    }
+
+    /// The forces of pins, clamps and bodies on the fabric.
+    pub fn forces(&self) -> Forces {
+        let Scene { pins, clamps, bodies, .. } = &self.scene;
+        let state = self.state();
+        let mut by_bodies = self.stepper.body_forces.clone();
+        by_bodies.resize(bodies.len(), DVec3::ZERO); // before the first step, and where bodies came since
+        Forces {
+            pins: pins.iter().map(|p| p.force(state.position[p.node as usize])).collect(),
+            clamps: clamps.iter().map(|c| clamp_force(c, state, self.scene_time)).collect(),
+            bodies: by_bodies,
+        }
+    }
+
+    /// The same in words.
+    pub fn holds(&self) -> Vec<HoldFact> {
+        facts::holds(&self.scene, &self.forces())
+    }
+
+    /// Changes gravity, bodies, pins or time step; refused as a whole if anything in it makes no sense. What moves begins anew,
+    /// unless all of it moves as before.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimError> {
         scene.validate(self.net().nodes.len())?;
         self.step = scene.time_step;
+        if !scene.moves_like(&self.scene) {
+            self.scene_time = 0.0;
+        }
         self.scene = scene;
         Ok(())
     }
@@ -329,8 +366,14 @@ impl Simulator {
             steps: self.steps,
             time_s: self.time,
             kinetic_j: self.kinetic_energy(),
+            holds: self.holds(),
             rejected_steps: self.rejected,
-            ..facts::measure(&self.stepper.model, &self.materials, &self.scene, self.state())
+            ..facts::measure(
+                &self.stepper.model,
+                &self.materials,
+                (&self.scene, self.scene_time),
+                self.state(),
+            )
         }
     }
 }

@@ -11,7 +11,6 @@
 //! shape, if ever.
 
 use crate::assembly::{Start, System};
-use crate::body::BodyContact;
 use crate::curves::normal;
 use crate::friction::{Anchors, FrictionSpring, PerYarn, Stack};
 use crate::layers::{LayerContact, Layers, Press};
@@ -24,14 +23,11 @@ use crate::scene::Scene;
 use crate::solver::Solver;
 use crate::solver::cholesky::SolveError;
 use crate::solver::tail::Link;
+use crate::surroundings::{BODY_STIFFNESS, body_forces};
 use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
 use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{Node, YarnState};
-
-/// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
-/// weight, at 1e4 a corner that touches down alone upsets the conditioning.
-const BODY_STIFFNESS: f64 = 100.0;
 
 /// Why a step was thrown away.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -58,14 +54,16 @@ pub(crate) struct Stepper {
     /// Of each colour of the model.
     materials: Vec<Material>,
     /// Mass of the yarn around each node [node_count] [kg].
-    masses: Vec<f64>,
+    pub masses: Vec<f64>,
     /// Distance that each node keeps from bodies, half of that from other layers [node_count] [m].
-    clearances: Vec<f64>,
+    pub clearances: Vec<f64>,
     /// √μ of the yarn at each node [node_count].
     grips: Vec<f64>,
     layers: Layers,
     /// The nodes at which yarns slide on each other.
     pub stacks: Vec<Stack>,
+    /// Force of each body on the fabric in the last step that went well [N].
+    pub body_forces: Vec<DVec3>,
 }
 
 /// A state of the yarn with all that the next step needs of the last.
@@ -92,6 +90,7 @@ impl Stepper {
             grips: Vec::new(),
             layers,
             stacks,
+            body_forces: Vec::new(),
         };
         stepper.set_materials(materials);
         Ok(stepper)
@@ -106,8 +105,8 @@ impl Stepper {
         self.grips = self.model.net.nodes.iter().map(grip).collect();
     }
 
-    /// The state after a step of `h` [s] from `now`.
-    pub fn step(&mut self, now: &Stuck, scene: &Scene, h: f64) -> Result<Stuck, Rejection> {
+    /// The state after a step of `h` from `now`, `time_s` after the scene has begun [s].
+    pub fn step(&mut self, now: &Stuck, scene: &Scene, time_s: f64, h: f64) -> Result<Stuck, Rejection> {
         let state = &now.state;
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
         let Scene { gravity, air, .. } = *scene;
@@ -115,16 +114,18 @@ impl Stepper {
         self.system.assemble(&self.model, start);
         let anchors = self.add_friction(now, h);
         self.add_layers(state, scene, h);
-        let touched = self.add_bodies(state, scene, h) + self.add_pins(state, scene, h);
+        let touching = self.add_bodies(state, scene, time_s, h);
+        let held = self.add_pins(state, scene, time_s + h, h);
         let mut solution = self.rates(state);
         self.solver.solve(&self.model, &self.system.matrix, &self.system.rhs, &mut solution)?;
         let (mut velocity, rate) = self.split(&solution);
-        if touched == 0 && air == 0.0 {
+        if touching.is_empty() && held == 0 && air == 0.0 {
             let kept = Rotation { omega: rotation.omega / (1.0 + h * self.mean_mass_damping()), ..rotation };
             self.keep_rotation(state, &mut velocity, kept);
         }
         let next = advanced(state, velocity, rate, h);
         self.judge(state, &next)?;
+        self.body_forces = body_forces(scene, &touching, &next.velocity, h);
         Ok(Stuck { state: next, anchors })
     }
 
@@ -165,28 +166,6 @@ impl Stepper {
         anchors
     }
 
-    /// Gives the number of contacts.
-    fn add_bodies(&mut self, state: &YarnState, scene: &Scene, h: f64) -> usize {
-        let mut count = 0;
-        for &body in &scene.bodies {
-            for node in 0..state.position.len() {
-                let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
-                let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
-                let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
-                let (gap, normal) = contact.gap(x);
-                if gap + h * v.dot(normal).min(0.0) >= 0.0 {
-                    continue;
-                }
-                count += 1;
-                self.add_point(node, &contact, x, h);
-                let drag = h * contact.drag(x, v, mass, h);
-                let n = normal.to_array();
-                self.add_block(node, |i, j| drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
-            }
-        }
-        count
-    }
-
     /// Layers of the fabric that lie on each other.
     fn add_layers(&mut self, state: &YarnState, scene: &Scene, h: f64) {
         let contact = LayerContact {
@@ -201,20 +180,11 @@ impl Stepper {
             let block = h * (h * stiffness * along + drag * (DMat3::IDENTITY - along));
             let start = nodes.map(|n| self.model.start[n]);
             for (node, force) in nodes.into_iter().zip([force, -force]) {
-                let first = self.model.start[node] as usize;
-                (0..3).for_each(|i| self.system.rhs[first + i] += h * force[i]);
+                self.push(node, h * force);
                 self.add_block(node, |i, j| block.col(j)[i]);
             }
             self.system.matrix.tail.push(Link { start, block });
         }
-    }
-
-    /// Gives the number of pins.
-    fn add_pins(&mut self, state: &YarnState, scene: &Scene, h: f64) -> usize {
-        for pin in &scene.pins {
-            self.add_point(pin.node as usize, pin, state.position[pin.node as usize], h);
-        }
-        scene.pins.len()
     }
 
     /// α of the whole fabric: that of its yarns by their mass [1/s].
@@ -225,7 +195,7 @@ impl Stepper {
     }
 
     /// Adds a force on the position of one node.
-    fn add_point(&mut self, node: usize, element: &impl Element<3>, x: DVec3, h: f64) {
+    pub fn add_point(&mut self, node: usize, element: &impl Element<3>, x: DVec3, h: f64) {
         let local = element.expand(&x.to_array());
         for i in 0..3 {
             self.system.rhs[self.model.start[node] as usize + i] -= h * local.gradient[i];
@@ -233,8 +203,14 @@ impl Stepper {
         self.add_block(node, |i, j| h * h * local.hessian[i][j]);
     }
 
+    /// Adds an impulse on one node [N s].
+    pub fn push(&mut self, node: usize, impulse: DVec3) {
+        let first = self.model.start[node] as usize;
+        (0..3).for_each(|i| self.system.rhs[first + i] += impulse[i]);
+    }
+
     /// Adds a 3 × 3 block to the matrix.
-    fn add_block(&mut self, node: usize, entry: impl Fn(usize, usize) -> f64) {
+    pub fn add_block(&mut self, node: usize, entry: impl Fn(usize, usize) -> f64) {
         for j in 0..3 {
             for i in j..3 {
                 let place = self.system.matrix.place(self.model.start[node], 0, i as u32, j as u32);

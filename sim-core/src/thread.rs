@@ -5,6 +5,7 @@
 //! Time goes no faster than on the clock, so that a small swatch falls as one would see it fall.
 
 use crate::curves::curves;
+use crate::facts::HoldFact;
 use crate::materials::Materials;
 use crate::scene::Scene;
 use crate::simulator::{SimError, Simulator};
@@ -64,6 +65,10 @@ pub struct Snapshot {
     pub time_s: f64,
     /// Whether time goes by.
     pub playing: bool,
+    /// Time since the scene began, by which its bodies move [s].
+    pub scene_time_s: f64,
+    /// What holds the fabric, or touches it, and how hard.
+    pub holds: Vec<HoldFact>,
     /// What last went wrong, if anything. A simulation that is stuck is paused.
     pub error: Option<String>,
     /// Clock time of the last step [ms].
@@ -169,8 +174,18 @@ impl Worker {
         match (command, &mut self.run) {
             (SimCommand::Load { net, materials, scene, state }, run) => {
                 self.loads += 1;
+                let is_laid_no_more = state.is_some();
                 let state = state.unwrap_or_else(|| Arc::new(net.laid_state()));
-                *run = Some(Run::new(net, materials, scene, state));
+                // After an edit, what moves goes on.
+                let before = run.as_ref().and_then(|r| r.simulator.as_ref());
+                let before = before
+                    .filter(|s| is_laid_no_more && s.scene().moves_like(&scene))
+                    .map(Simulator::scene_time_s);
+                let mut new = Run::new(net, materials, scene, state);
+                if let (Some(simulator), Some(time_s)) = (&mut new.simulator, before) {
+                    simulator.resume_at(time_s);
+                }
+                *run = Some(new);
             }
             (SimCommand::Stop, run) => *run = None,
             (_, None) => {}
@@ -251,6 +266,8 @@ impl Run {
             surgery: self.simulator.as_ref().map(|s| s.surgery().clone()).unwrap_or_default(),
             curves: if drawable { curves(net, state, &self.materials) } else { YarnCurves::default() },
             time_s: self.simulator.as_ref().map_or(0.0, Simulator::time_s),
+            scene_time_s: self.simulator.as_ref().map_or(0.0, Simulator::scene_time_s),
+            holds: self.simulator.as_ref().map_or_else(Vec::new, Simulator::holds),
             playing: self.playing,
             error: self.error.clone(),
             ms_per_step: self.ms_per_step,

@@ -93,7 +93,7 @@ enum Verb {
         project: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// free, board, ground, sphere, form, or a file; the project's own scene if absent
+        /// free, board, ground, sphere, form, hang, pull, walk, or a file (docs/scenes.md); the project's own scene if absent
         #[arg(long)]
         scene: Option<String>,
         /// Simulated time

@@ -252,6 +252,13 @@ pub enum Command {
         /// All of it.
         scene: Scene,
     },
+    /// Holds some stitches where they are, by a spring at each node.
+    Hold {
+        /// The faces.
+        faces: Vec<u32>,
+    },
+    /// Lets go of everything that is held.
+    LetGo,
     /// Cuts the yarn in the middle of the loops of some stitches.
     CutYarn {
         /// The faces.
@@ -357,6 +364,8 @@ impl Command {
                 scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
                 project.scene = scene.clone();
             }
+            Self::Hold { faces } => pins::hold(project, faces)?,
+            Self::LetGo => project.scene.let_go(),
             Self::ResetYarn => {
                 project.fabric = project.fabric.as_ref().map(Fabric::laid_anew);
             }

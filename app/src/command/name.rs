@@ -78,6 +78,8 @@ impl Command {
             Self::SetScene { .. } => "Change scene".into(),
             Self::CutYarn { faces } => format!("Cut the yarn of {}", many(faces.len(), "stitch")),
             Self::DropLoops { faces } => format!("Drop {}", many(faces.len(), "stitch")),
+            Self::Hold { faces } => format!("Hold {}", many(faces.len(), "stitch")),
+            Self::LetGo => "Let go".into(),
             Self::ResetYarn => "Lay yarn anew".into(),
             Self::Compensate { text: Some(text) } => format!("Loops at rest as in {}", title(text)),
             Self::Compensate { text: None } => "Loops as drawn".into(),

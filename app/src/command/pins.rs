@@ -1,20 +1,30 @@
-//! Pins through an edit, which gives the nodes of the yarn new numbers.
+//! Holding stitches; pins and clamps through an edit, which gives the nodes of the yarn new numbers.
 
-use sim_core::Pin;
+use super::check_face;
+use crate::project::Project;
+use crate::scenes;
+use anyhow::Result;
+use sim_core::Scene;
 use std::collections::HashMap;
 use stitch_mesh::ids::FaceId;
 use stitch_mesh::yarn_net::YarnNet;
 
-/// The pins on `new` that hold what those on `old` held: nodes of stitches, or outside of the mesh, that have as many nodes
-/// as before. `was` tells which face of the old mesh a face of the new one was.
-pub(super) fn moved(
-    pins: &[Pin],
-    old: &YarnNet,
-    new: &YarnNet,
-    was: impl Fn(FaceId) -> Option<FaceId>,
-) -> Vec<Pin> {
-    if pins.is_empty() {
-        return Vec::new();
+/// Adds a clamp that holds some stitches where they are.
+pub(super) fn hold(project: &mut Project, faces: &[u32]) -> Result<()> {
+    let fabric = project.fabric()?;
+    let count = fabric.stitches.mesh().face_count();
+    faces.iter().try_for_each(|f| check_face(*f, count))?;
+    let name = format!("hold {}", project.scene.clamps.len());
+    let clamp = scenes::held(fabric, &project.materials.base, faces, name);
+    project.scene.clamps.push(clamp);
+    Ok(())
+}
+
+/// Lets the pins and clamps of a scene hold on `new` what they held on `old`: nodes of stitches, or outside of the mesh, that
+/// have as many nodes as before. `was` tells which face of the old mesh a face of the new one was.
+pub(super) fn keep(scene: &mut Scene, old: &YarnNet, new: &YarnNet, was: impl Fn(FaceId) -> Option<FaceId>) {
+    if scene.pins.is_empty() && scene.clamps.is_empty() {
+        return;
     }
     let by_face = |net: &YarnNet| {
         let mut nodes: HashMap<Option<FaceId>, Vec<u32>> = HashMap::new();
@@ -32,5 +42,7 @@ pub(super) fn moved(
         let same = before.and_then(|f| old.get(&f)).filter(|o| o.len() == nodes.len());
         now.extend(same.into_iter().flatten().copied().zip(nodes));
     }
-    pins.iter().filter_map(|pin| Some(Pin { node: *now.get(&pin.node)?, ..*pin })).collect()
+    let renumbered = |node: &mut u32| now.get(node).map(|n| *node = *n).is_some();
+    scene.pins.retain_mut(|pin| renumbered(&mut pin.node));
+    scene.clamps.iter_mut().for_each(|clamp| clamp.nodes.retain_mut(|(node, _)| renumbered(node)));
 }

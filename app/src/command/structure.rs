@@ -21,7 +21,7 @@ fn reshape(
     let fabric = Fabric::with_rest_shape(stitches, from.rest_shape.clone());
     let was = survivors.faces_before();
     let old_face = |f: FaceId| was.get(f.index()).copied().flatten();
-    project.scene.pins = pins::moved(&before.scene.pins, &from.net, &fabric.net, old_face);
+    pins::keep(&mut project.scene, &from.net, &fabric.net, old_face);
     project.fabric = Some(fabric);
     project.keep_yarn_of(&before, Some(&was));
     Ok(Some(survivors))

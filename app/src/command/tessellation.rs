@@ -36,7 +36,7 @@ pub(super) fn tessellate(project: &mut Project, width_mm: Option<f64>) -> Result
     }
     project.size = size;
     project.counts = Some(counts);
-    project.scene.pins.clear();
+    project.scene.let_go();
     project.fabric = Some(Fabric::new(stitches));
     Ok(())
 }

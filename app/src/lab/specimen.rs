@@ -4,7 +4,7 @@
 //! each the middle of a stitch.
 
 use super::report::Picture;
-use crate::drawing::solids;
+use crate::solids::solids;
 use crate::written::swatch;
 use anyhow::{Context, Result};
 use glam::DVec3;
@@ -121,7 +121,7 @@ impl Specimen {
     /// What it looks like.
     pub fn drawing(&self, state: &YarnState, scene: &Scene) -> Drawing {
         let yarn = curves(&self.net, state, &self.materials);
-        Drawing { yarn, solids: solids(scene), ..Drawing::default() }
+        Drawing { yarn, solids: solids(scene, 0.0), ..Drawing::default() }
     }
 
     /// A picture of it alone.

@@ -5,8 +5,8 @@
 use super::bench::Bench;
 use super::report::{Picture, Table};
 use super::specimen::LOOP;
-use crate::drawing::solids;
 use crate::library::ENTRIES;
+use crate::solids::solids;
 use crate::written::repeated;
 use anyhow::{Context, Result};
 use glam::DVec3;
@@ -60,7 +60,8 @@ pub fn run(bench: &mut Bench) -> Result<()> {
         bench.report.figure(format!("{key}_reach_mm"), reach);
         rows.push(vec![rows.len() as f64 + 1.0, hang, reach]);
         let yarn = curves(&fabric.net, simulator.state(), &fabric.materials);
-        let drawing = Drawing { yarn, solids: solids(simulator.scene()), ..Drawing::default() };
+        let drawing =
+            Drawing { yarn, solids: solids(simulator.scene(), simulator.time_s()), ..Drawing::default() };
         shown.push((fabric.name.to_owned(), drawing));
         let view = NamedView::ThreeQuarter;
         bench.report.pictures = vec![Picture { name: "sphere", view, shown: shown.clone() }];

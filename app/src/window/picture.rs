@@ -2,9 +2,10 @@
 
 use super::editor::Editor;
 use super::selection::Mode;
-use crate::drawing::{Stage, drawing_where, solids, stitch_colors};
+use crate::drawing::{Stage, drawing_where, stitch_colors};
+use crate::solids::solids;
 use glam::Vec3;
-use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
+use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, palette};
 use std::sync::Arc;
 use stitch_mesh::ids::FaceId;
 
@@ -44,7 +45,7 @@ impl Editor {
             Stage::Yarn => {
                 // Curves come with the snapshots, made in the simulation's thread.
                 let yarn = self.snapshot.as_ref().map(|s| s.curves.clone()).unwrap_or_default();
-                Drawing { yarn, solids: solids(&self.view.project.scene), ..Drawing::default() }
+                Drawing { yarn, solids: self.solids_now(), ..Drawing::default() }
             }
             stage => {
                 let hidden = &self.selection().hidden;
@@ -92,8 +93,19 @@ impl Editor {
         let Some(snapshot) = self.snapshot.clone() else { return };
         let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&snapshot.curves));
         self.report(shown);
+        if self.view.project.scene.bodies.iter().any(|b| b.motion().is_some()) {
+            let solids = self.solids_now();
+            let shown = self.screen.as_mut().map(|screen| screen.set_solids(&solids));
+            self.report(shown);
+        }
         self.faces = self.loop_faces();
         self.marked = None;
+    }
+
+    /// The bodies where they are in the simulation.
+    fn solids_now(&self) -> Solids {
+        let time_s = self.snapshot.as_ref().map_or(0.0, |s| s.scene_time_s);
+        solids(&self.view.project.scene, time_s)
     }
 
     /// Colours the faces: by their own colours or by strain, tinted where they are selected.

@@ -15,6 +15,7 @@ use crate::fabric::Moved;
 use crate::files;
 use crate::open::open_any;
 use crate::project::Project;
+use crate::scenes;
 use crate::written::{tiled, told};
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
@@ -45,6 +46,8 @@ pub enum Request {
     GoTo(usize),
     /// Open a project or mesh in place of this one.
     Open(PathBuf),
+    /// Take the scene of a name or a file.
+    Scene(String),
     /// Save the project.
     Save(PathBuf),
     /// Save knitting instructions, for all or for some stitches.
@@ -64,6 +67,7 @@ impl Request {
             Self::Redo => "Redo".into(),
             Self::GoTo(_) => "Go through the history".into(),
             Self::Open(path) => format!("Open {}", path.display()),
+            Self::Scene(name) => format!("Scene {name}"),
             Self::Save(path)
             | Self::SaveScript(path)
             | Self::SaveInstructions(path, _)
@@ -256,6 +260,13 @@ impl Worker {
                 let message = format!("Opened {}", path.display());
                 self.path = Some(path);
                 Ok(message)
+            }
+            Request::Scene(name) => {
+                let project = self.document.project().clone();
+                // A mesh in it takes its time.
+                let made = move || scenes::scene(&name, project.fabric()?, &project.materials.base);
+                let scene = self.unless_cancelled(made)?;
+                self.apply(Command::SetScene { scene }, false)
             }
             Request::Save(path) => {
                 self.document.project().save(&path)?;

@@ -4,8 +4,8 @@
 //! its barycentric coordinates onto the smooth ones. A stitch mesh that has been relaxed before lies on the smooth surface
 //! already and is looked up there: relaxing again goes on from where it was.
 
-use super::bvh::{Bvh, nearest_on_segment, nearest_on_triangle};
 use super::surface::{Place, Surface};
+use crate::bvh::{Bvh, nearest_on_segment, nearest_on_triangle};
 use glam::DVec3;
 use rayon::prelude::*;
 use stitch_mesh::ids::VertexId;

@@ -54,7 +54,6 @@
 //! - A tube may creep round itself for ever, at 1e-5 of its energy a step: hence [`RelaxParams::tolerance`] alone is no end.
 //! - Without `fold` the crown of a hat with too few decreases came out with stitches under each other, at a *lower* energy.
 
-mod bvh;
 mod conjugate;
 mod elements;
 mod fold;

@@ -1,6 +1,6 @@
 use super::surface::Place;
 use super::*;
-use crate::mesh_relax::bvh::{nearest_on_segment, nearest_on_triangle};
+use crate::bvh::{nearest_on_segment, nearest_on_triangle};
 use crate::noise::unit_hash;
 use stitch_mesh::autolabel::autolabel;
 use stitch_mesh::edge_counts::{EdgeCounts, StitchSize};

@@ -47,7 +47,7 @@ impl Hanging {
         // From the laid shape only small steps go well at first.
         let mut h = 0.5 * STEP;
         while h <= STEP {
-            match hanging.stepper.step(&hanging.now, &hanging.scene, h) {
+            match hanging.stepper.step(&hanging.now, &hanging.scene, 0.0, h) {
                 Ok(next) => (hanging.now, h) = (next, 1.1 * h),
                 Err(_) => h *= 0.5,
             }
@@ -56,7 +56,7 @@ impl Hanging {
     }
 
     fn step(&mut self) -> Stuck {
-        self.stepper.step(&self.now, &self.scene, STEP).unwrap()
+        self.stepper.step(&self.now, &self.scene, 0.0, STEP).unwrap()
     }
 
     fn direct(&self) -> Solver {

@@ -92,6 +92,19 @@ pub(super) const ACTIONS: &[Action] = &[
         e.set_strained(true);
     })
     .at(FABRIC),
+    Action::new("Hold", "Hold stitches where they are", |e| {
+        let faces = e.faces_meant().into_iter().map(|f| f.0).collect();
+        e.act(Command::Hold { faces });
+    })
+    .at(FABRIC)
+    .on(On::Faces)
+    .unless(Editor::no_faces),
+    Action::new("Let go", "Let go of everything that is held", |e| e.act(Command::LetGo)).at(FABRIC).unless(
+        |e| {
+            let scene = &e.project().scene;
+            (scene.pins.is_empty() && scene.clamps.is_empty()).then_some("nothing is held")
+        },
+    ),
     Action::new("Show strain", "Colour stitches by how far they are from even, or by their kind", |e| {
         let strained = !(e.strained && e.stage == Stage::Stitches);
         e.go_to(Stage::Stitches);

@@ -11,6 +11,7 @@ mod palette;
 mod patterns;
 mod problems;
 pub mod right;
+mod scene;
 pub mod status;
 mod tessellation;
 pub mod top;
@@ -34,6 +35,8 @@ pub struct State {
     pub width_mm: f64,
     /// Width over height of the viewport.
     pub aspect: f32,
+    /// The field for a scene file.
+    pub scene: String,
     /// The colour of the yarn whose material is shown; none for all that have none of their own.
     pub yarn: Option<Dye>,
     /// Its material while a number is dragged.
@@ -69,6 +72,7 @@ impl State {
             path: view.path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(),
             width_mm: 1e3 * view.project.size.width,
             aspect: 4.0 / 3.0,
+            scene: String::new(),
             yarn: None,
             material: None,
             width_changed: view.project.fabric.is_none(),

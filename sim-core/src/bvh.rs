@@ -14,7 +14,7 @@ struct Node {
 }
 
 /// Boxes of primitives, halved at the median of their longest side.
-pub(super) struct Bvh {
+pub(crate) struct Bvh {
     nodes: Vec<Node>,
     order: Vec<u32>,
 }
@@ -88,7 +88,7 @@ impl Bvh {
 }
 
 /// Barycentric coordinates of the point of a triangle nearest to `p` (Ericson, *Real-Time Collision Detection*, §5.1.5).
-pub(super) fn nearest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
+pub(crate) fn nearest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -122,7 +122,7 @@ pub(super) fn nearest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
 }
 
 /// How far along a segment its point nearest to `p` is, 0 … 1.
-pub(super) fn nearest_on_segment([a, b]: [DVec3; 2], p: DVec3) -> f64 {
+pub(crate) fn nearest_on_segment([a, b]: [DVec3; 2], p: DVec3) -> f64 {
     let along = b - a;
     let square = along.length_squared();
     if square > 0.0 { (along.dot(p - a) / square).clamp(0.0, 1.0) } else { 0.0 }

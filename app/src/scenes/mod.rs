@@ -1,26 +1,50 @@
 //! Scenes: what surrounds a fabric, by name or from a file.
 
+mod file;
+mod holds;
+mod skeleton;
+
 use crate::fabric::Fabric;
 use crate::files;
 use anyhow::{Context, Result, bail};
+use file::FRICTION;
 use glam::DVec3;
-use sim_core::{Body, Material, Pin, Scene};
+use sim_core::{Body, Clamp, Material, Motion, Pin, Scene};
 use std::path::Path;
-use stitch_mesh::ids::HalfEdgeId;
+use stitch_mesh::ids::{FaceId, HalfEdgeId};
 use stitch_mesh::stitch_mesh::StitchMesh;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
-/// Friction of wool on a body.
-const FRICTION: f64 = 0.4;
-
 /// Scenes by name, and what they are.
-pub const NAMED: [(&str, &str); 5] = [
+pub const NAMED: [(&str, &str); 8] = [
     ("free", "no gravity, nothing around"),
     ("board", "pinned out by its borders, as a knitter blocks it"),
     ("ground", "falling on the ground"),
     ("sphere", "falling on a sphere over the ground"),
     ("form", "worn by a dress form (made for the bundled pullover)"),
+    ("hang", "held by its last row"),
+    ("pull", "its first and last rows drawn apart"),
+    ("walk", "worn by a mannequin who walks (made for the bundled cowl)"),
 ];
+
+/// Those of them that are files, as anybody could write them.
+const FILES: [(&str, &str); 3] = [
+    ("hang", include_str!("../../../assets/scenes/hang.json")),
+    ("pull", include_str!("../../../assets/scenes/pull.json")),
+    ("walk", include_str!("../../../assets/scenes/walk.json")),
+];
+
+/// The box around yarn [m].
+fn bounds(state: &YarnState) -> (DVec3, DVec3) {
+    let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    state.position.iter().fold(empty, |(low, high), p| (low.min(*p), high.max(*p)))
+}
+
+/// Stiffness of a spring at one node that gives way about as much as the yarn does [N/m].
+fn firm(stitches: &StitchMesh, material: &Material) -> f64 {
+    let spacing = stitches.mesh().edges().next().map_or(1e-3, |e| stitches.mesh().edge_length(e));
+    material.stretch_stiffness() / spacing
+}
 
 /// Pins at the stitches on the borders of a fabric, or on those that `on` says, and at its cast-on and bind-off.
 pub fn pinned_out(
@@ -29,8 +53,7 @@ pub fn pinned_out(
     material: &Material,
     on: impl Fn(HalfEdgeId) -> bool,
 ) -> Scene {
-    let spacing = stitches.mesh().edges().next().map_or(1e-3, |e| stitches.mesh().edge_length(e));
-    let stiffness = material.stretch_stiffness() / spacing;
+    let stiffness = firm(stitches, material);
     let held = net.nodes.iter().zip(&state.position).enumerate().filter(|(_, (node, _))| match node.face {
         Some(face) => {
             stitches.mesh().face_half_edges(face).any(|h| stitches.mesh().twin(h).is_none() && on(h))
@@ -41,16 +64,25 @@ pub fn pinned_out(
     Scene { pins, ..Scene::empty() }
 }
 
+/// A clamp that holds some stitches where they are.
+pub(crate) fn held(fabric: &Fabric, material: &Material, faces: &[u32], name: String) -> Clamp {
+    let state = fabric.state();
+    let nodes = holds::of_stitches(fabric, &faces.iter().map(|f| FaceId(*f)).collect());
+    Clamp {
+        name,
+        nodes: nodes.into_iter().map(|n| (n, state.position[n as usize])).collect(),
+        stiffness: firm(&fabric.stitches, material),
+        motion: Motion::default(),
+    }
+}
+
 /// A scene by name or file, placed to suit a fabric.
 ///
 /// # Errors
 /// Neither a name nor a readable file; a file that is no scene.
 pub fn scene(name_or_file: &str, fabric: &Fabric, material: &Material) -> Result<Scene> {
     let state = fabric.state();
-    let (low, high) = state
-        .position
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+    let (low, high) = bounds(&state);
     let (middle, size) = ((low + high) / 2.0, (high - low).max_element());
     let ground = |height| Body::Ground { height, friction: FRICTION };
     let capsule = |x: f64, y: f64, radius: f64| Body::Capsule {
@@ -81,13 +113,24 @@ pub fn scene(name_or_file: &str, fabric: &Fabric, material: &Material) -> Result
             time_step: 0.01,
             ..Scene::default()
         },
-        file if Path::new(file).exists() => {
-            let bytes = files::read(Path::new(file))?;
-            serde_json::from_slice(&bytes).with_context(|| format!("{file} is not a scene"))?
-        }
-        unknown => {
-            let names: Vec<&str> = NAMED.iter().map(|(name, _)| *name).collect();
-            bail!("no scene '{unknown}': neither a file nor one of {}", names.join(", "))
+        other => {
+            let stiffness = firm(&fabric.stitches, material);
+            let bundled = FILES.iter().find(|(name, _)| *name == other);
+            let (text, folder) = match bundled {
+                Some((_, text)) => ((*text).to_owned(), Path::new("")),
+                None if Path::new(other).is_file() => {
+                    let text = String::from_utf8(files::read(Path::new(other))?);
+                    (
+                        text.with_context(|| format!("{other} is not text"))?,
+                        Path::new(other).parent().unwrap_or(Path::new("")),
+                    )
+                }
+                None => {
+                    let names: Vec<&str> = NAMED.iter().map(|(name, _)| *name).collect();
+                    bail!("no scene '{other}': neither a file nor one of {}", names.join(", "))
+                }
+            };
+            file::read(&text, folder, fabric, stiffness).with_context(|| format!("scene {other}"))?
         }
     })
 }

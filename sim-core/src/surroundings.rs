@@ -1,0 +1,66 @@
+//! What a scene does to the nodes of a fabric in one step: bodies, pins and clamps.
+//!
+//! Everything is taken where it is at the end of the step. Forces come back as they acted: those of the springs follow from
+//! where their nodes ended, those of bodies from the velocities that were solved for.
+
+use crate::body::Placed;
+use crate::body_contact::{BodyContact, Touching};
+use crate::scene::{Clamp, Scene};
+use crate::step::Stepper;
+use glam::DVec3;
+use stitch_mesh::yarn_net::YarnState;
+
+/// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
+/// weight, at 1e4 a corner that touches down alone upsets the conditioning.
+pub(crate) const BODY_STIFFNESS: f64 = 100.0;
+
+impl Stepper {
+    /// Adds the bodies as they are at the end of the step of `h` from `time_s` on [s].
+    pub fn add_bodies(&mut self, state: &YarnState, scene: &Scene, time_s: f64, h: f64) -> Vec<Touching> {
+        let mut touching = Vec::new();
+        for (index, body) in scene.bodies.iter().enumerate() {
+            let body = Placed::new(body, time_s, h);
+            for node in 0..state.position.len() {
+                let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
+                let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
+                let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
+                let (gap, normal) = contact.gap(x);
+                let surface = body.velocity(x);
+                if gap + h * v.dot(normal).min(surface.dot(normal)) >= 0.0 {
+                    continue;
+                }
+                self.add_point(node, &contact, x, h);
+                let drag = contact.drag((gap, normal), v - surface, mass, h);
+                let n = normal.to_array();
+                self.add_block(node, |i, j| h * drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
+                self.push(node, h * drag * (surface - surface.dot(normal) * normal));
+                touching.push(Touching { body: index, node, gap, normal, stiffness, drag, surface });
+            }
+        }
+        touching
+    }
+
+    /// Adds pins and clamps as they are at `time_s`, the end of the step of `h` [s]. Gives the number of springs.
+    pub fn add_pins(&mut self, state: &YarnState, scene: &Scene, time_s: f64, h: f64) -> usize {
+        let mut count = 0;
+        for pin in scene.pins.iter().copied().chain(scene.clamps.iter().flat_map(|c| c.pins(time_s))) {
+            self.add_point(pin.node as usize, &pin, state.position[pin.node as usize], h);
+            count += 1;
+        }
+        count
+    }
+}
+
+/// The force of each body on a fabric that ended the step of `h` [s] with `velocity` [N].
+pub(crate) fn body_forces(scene: &Scene, touching: &[Touching], velocity: &[DVec3], h: f64) -> Vec<DVec3> {
+    let mut forces = vec![DVec3::ZERO; scene.bodies.len()];
+    for contact in touching {
+        forces[contact.body] += contact.force(velocity[contact.node], h);
+    }
+    forces
+}
+
+/// The force of a clamp on a fabric, all its springs together, at a time [s] [N].
+pub(crate) fn clamp_force(clamp: &Clamp, state: &YarnState, time_s: f64) -> DVec3 {
+    clamp.pins(time_s).map(|pin| pin.force(state.position[pin.node as usize])).sum()
+}
