@@ -19,6 +19,7 @@ mod jaws;
 mod overstretch;
 pub mod plot;
 mod pull;
+mod pullout;
 mod regimes;
 mod report;
 mod rest_shape;
@@ -50,6 +51,8 @@ pub enum Experiment {
     Bending,
     /// What stays of an extension beyond what friction holds
     Overstretch,
+    /// A row drawn out of the fabric by its yarn
+    Pullout,
     /// Six fabrics dropped on a sphere
     Sphere,
     /// Course and wale spacing of relaxed plain knit against its loop length
@@ -92,6 +95,7 @@ impl Experiment {
             Self::Shear => shear::run(&mut bench, setup),
             Self::Bending => bending::run(&mut bench),
             Self::Overstretch => overstretch::run(&mut bench),
+            Self::Pullout => pullout::run(&mut bench),
             Self::Sphere => sphere::run(&mut bench),
             Self::Gauge => gauge::run(&mut bench),
             Self::RestShape => rest_shape::run(&mut bench),

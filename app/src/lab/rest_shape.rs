@@ -67,7 +67,7 @@ pub fn run(bench: &mut Bench) -> Result<()> {
         lines.push(Line::new(format!("loops {what}"), points.iter().map(|p| [p[0], p[1] * 1e-2]).collect()));
         shown.push((
             format!("Loops {what}"),
-            specimen.drawing(&centred(simulator.state()), simulator.scene()),
+            specimen.drawing(simulator.net(), &centred(simulator.state()), simulator.scene()),
         ));
     }
     let last = rows.last().map_or(0.0, |row| row[0]);

@@ -118,15 +118,15 @@ impl Specimen {
         Ok([across.normalize(), along.normalize(), front])
     }
 
-    /// What it looks like.
-    pub fn drawing(&self, state: &YarnState, scene: &Scene) -> Drawing {
-        let yarn = curves(&self.net, state, &self.materials);
+    /// What it looks like, its net as it is by now.
+    pub fn drawing(&self, net: &YarnNet, state: &YarnState, scene: &Scene) -> Drawing {
+        let yarn = curves(net, state, &self.materials);
         Drawing { yarn, solids: solids(scene, 0.0), ..Drawing::default() }
     }
 
     /// A picture of it alone.
     pub fn picture(&self, name: &'static str, view: NamedView, simulator: &Simulator) -> Picture {
-        let drawing = self.drawing(simulator.state(), simulator.scene());
+        let drawing = self.drawing(simulator.net(), simulator.state(), simulator.scene());
         Picture { name, view, shown: vec![(String::new(), drawing)] }
     }
 }

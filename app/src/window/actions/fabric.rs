@@ -1,7 +1,7 @@
 //! What is marked on the edges of a fabric, and what is done to stitches as a whole: cables, seams, live loops, colours,
 //! regions, relaxing.
 
-use super::{Action, FABRIC, On, ends};
+use super::{Action, FABRIC, On, YARN, ends};
 use crate::command::Command;
 use crate::drawing::Stage;
 use crate::window::editor::Editor;
@@ -35,6 +35,24 @@ pub(super) const ACTIONS: &[Action] = &[
     .at(FABRIC)
     .on(On::Edges)
     .unless(|e| none_marked(e, |s| s.marks().seams.is_empty(), "there are no seams")),
+    Action::new("Cut yarn", "Cut the yarn in the middle of the loops of stitches", |e| {
+        let faces = e.faces_meant().into_iter().map(|f| f.0).collect();
+        e.act(Command::CutYarn { faces });
+    })
+    .at(YARN)
+    .on(On::Faces)
+    .unless(Editor::no_faces),
+    Action::new(
+        "Drop stitches",
+        "Let the loops of stitches slip off what holds them, so that they may run",
+        |e| {
+            let faces = e.faces_meant().into_iter().map(|f| f.0).collect();
+            e.act(Command::DropLoops { faces });
+        },
+    )
+    .at(YARN)
+    .on(On::Faces)
+    .unless(Editor::no_faces),
     Action::new("Live loops", "Leave the loops of border edges live, or bind them off again", live)
         .key(Modifiers::NONE, Key::V)
         .at(FABRIC)

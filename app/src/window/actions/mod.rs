@@ -44,6 +44,9 @@ pub struct Action {
     pub run: fn(&mut Editor),
 }
 
+/// The stage with yarn.
+const YARN: &[Stage] = &[Stage::Yarn];
+
 /// Stages with stitches.
 const FABRIC: &[Stage] = &[Stage::Stitches, Stage::Yarn];
 
