@@ -39,7 +39,7 @@ impl<'a> Bench<'a> {
     pub fn pass(&mut self, seconds: f64) -> Result<()> {
         self.done += seconds;
         if (self.watch)((self.done / self.planned).min(1.0), &self.report).is_break() {
-            bail!("stopped; nothing was written");
+            bail!("stopped");
         }
         Ok(())
     }

@@ -5,7 +5,11 @@
 //! l = 3.8 and their ratio 1.3 for dry-relaxed wool. Here the same yarn is laid in loops of several lengths.
 //!
 //! In the model the yarns of a contact share one line, along which yarn is as long as its way from node to node. Real yarn
-//! goes around its neighbour: drawn with its thickness it is longer, so the same is told with the length as it is drawn, too.
+//! goes around its neighbour: drawn with its thickness it is a quarter longer, so the same is told with the length as it is
+//! drawn, too. That brings both constants to within some percent of Munden's; the ratio needs no such correction.
+//!
+//! Course spacing is proportional to loop length, wale spacing less than that: thickness and contact lengths of the yarn stay the
+//! same while the loops grow, and tight loops are held wide by them.
 
 use super::bench::Bench;
 use super::report::{Line, Plot, Table};

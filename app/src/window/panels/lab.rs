@@ -12,8 +12,10 @@ use std::time::{Duration, Instant};
 
 /// Time between two looks at a running experiment.
 const LOOK: Duration = Duration::from_millis(200);
-/// Height of a plot [points].
+/// Size of the window, height of a plot, and room for the name of its lower axis [points].
+const SIZE: [f32; 2] = [540.0, 600.0];
 const PLOT: f32 = 300.0;
+const AXIS: f32 = 20.0;
 
 /// What the panel remembers.
 pub struct State {
@@ -95,7 +97,8 @@ impl Drop for Run {
 pub fn show(editor: &mut Editor, ctx: &Context) {
     let state = &mut editor.panel.lab;
     let mut open = state.open;
-    egui::Window::new("Experiments").open(&mut open).default_width(520.0).vscroll(true).show(ctx, |ui| {
+    let window = egui::Window::new("Experiments").open(&mut open).vscroll(true);
+    window.default_pos([240.0, 60.0]).default_size(SIZE).show(ctx, |ui| {
         choose(state, ui);
         let Some(run) = &state.run else { return };
         let (experiment, stopped) = (run.experiment, Arc::clone(&run.stopped));
@@ -168,6 +171,7 @@ fn found(report: &Report, ui: &mut Ui) {
     for shown in &report.plots {
         ui.strong(&shown.title);
         ui.allocate_ui(egui::vec2(ui.available_width(), PLOT), |ui| plot::show(ui, shown));
+        ui.add_space(AXIS);
     }
     report.remarks.iter().for_each(|remark| _ = ui.label(remark));
     egui::Grid::new("figures").striped(true).show(ui, |ui| {
