@@ -25,6 +25,10 @@
 //! rectangle, which is what was relaxed. Stitches find their shape by kind and by the kinds around them: a knit beside a
 //! purl takes after a knit beside a purl.
 //!
+//! These shapes are means over stitches that lean to and fro, so at the start yarn is some percent longer than its way (7 % in a
+//! tube of stockinette). The fabric takes that slack up at once, swells a little, and comes back to its size with the
+//! time that it needs to settle anyway.
+//!
 //! # Differences from the paper
 //! The paper takes the loop shapes over as they are. Their size then decides: a garment tessellated with stitches of another size
 //! than that of the relaxed rectangle would be strained again. Here the rectangle is fitted to the size of the garment's
@@ -280,43 +284,26 @@ mod tests {
     }
 
     #[test]
-    fn a_compensated_tube_keeps_its_size() {
+    fn a_compensated_tube_keeps_its_size_and_every_yarn_its_length() {
         let size = StitchSize::of_width(3e-3);
-        let sample = rectangle(12, 14, size).unwrap();
+        let sample = rectangle(10, 12, size).unwrap();
         let shape = RestShape::relax(&sample, &Material::for_loop_width(3e-3).into(), &mut |_| {}).unwrap();
-        let garment = tube(14, 12, size).unwrap();
+        let garment = tube(12, 10, size).unwrap();
         let plain = lay(&garment);
         let laid = area(&garment, &plain, &plain.laid_state());
         let without = kept(&garment, plain.clone(), plain.laid_state(), laid);
         let mut net = plain.clone();
         let start = shape.apply(&garment, &mut net);
-        let strain = |s: stitch_mesh::yarn_net::Segment| {
-            let [a, b] = s.ends.map(|v| start.position[net.visits[v.index()].node.index()]);
-            let [u, v] = s.ends.map(|v| start.sliding[v.index()]);
-            a.distance(b) / (v + s.wrap - u)
-        };
-        let strains: Vec<f64> = net.segments().filter(|s| s.wrap == 0.0).map(strain).collect();
-        println!("length over yarn at the start {:.3}", strains.iter().sum::<f64>() / strains.len() as f64);
+        for yarn in &net.yarns {
+            let (first, last) = (yarn.visits.start as usize, yarn.visits.end as usize - 1);
+            assert!((first..last).all(|v| start.sliding[v] < start.sliding[v + 1]));
+            match yarn.period {
+                Some(period) => assert!(start.sliding[last] - start.sliding[first] < period),
+                None => assert!((start.sliding[last] - net.visits[last].u).abs() < 1e-9),
+            }
+        }
         let with = kept(&garment, net, start, laid);
         println!("growth {:?}: {with:.3} with, {without:.3} without", shape.growth());
         assert!((with - 1.0).abs() < 0.5 * (without - 1.0).abs() && (with - 1.0).abs() < 0.05);
-    }
-
-    #[test]
-    fn sliding_keeps_the_length_of_every_yarn() {
-        let size = StitchSize::of_width(3e-3);
-        let sample = rectangle(10, 10, size).unwrap();
-        let shape = RestShape::relax(&sample, &Material::for_loop_width(3e-3).into(), &mut |_| {}).unwrap();
-        let garment = tube(9, 5, size).unwrap();
-        let mut net = lay(&garment);
-        let state = shape.apply(&garment, &mut net);
-        for yarn in &net.yarns {
-            let (first, last) = (yarn.visits.start as usize, yarn.visits.end as usize - 1);
-            assert!((first..last).all(|v| state.sliding[v] < state.sliding[v + 1]));
-            match yarn.period {
-                Some(period) => assert!(state.sliding[last] - state.sliding[first] < period),
-                None => assert!((state.sliding[last] - net.visits[last].u).abs() < 1e-9),
-            }
-        }
     }
 }
