@@ -1,5 +1,6 @@
 //! The command line. Exit status: 0 done; 1 the input or the work failed, with one line on standard error; 2 wrong usage.
 
+mod bench;
 mod chart;
 mod demo;
 mod interrupt;
@@ -201,6 +202,14 @@ enum Verb {
         #[command(flatten)]
         print: Output,
     },
+    /// Measures the simulator's speed, and what it achieved
+    Bench {
+        /// What to measure
+        #[arg(value_enum, default_value = "pull")]
+        suite: bench::Suite,
+        #[command(flatten)]
+        print: Output,
+    },
     /// Facts about a project
     Inspect {
         project: PathBuf,
@@ -333,6 +342,7 @@ fn run(arguments: Arguments) -> Result<()> {
             files::write_png(&output, &pictures)
         }
         Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
+        Verb::Bench { suite, print } => bench::run(suite, print),
         Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
