@@ -80,7 +80,7 @@ impl Project {
     /// which it is there; without it, both have to have the same mesh.
     pub fn keep_yarn_of(&mut self, other: &Self, was: Option<&[Option<FaceId>]>) {
         let (Some(fabric), Some(from)) = (&mut self.fabric, &other.fabric) else { return };
-        if was.is_none() && fabric.stitches.mesh() != from.stitches.mesh() {
+        if was.is_none() && !fabric.stitches.has_mesh_of(&from.stitches) {
             return;
         }
         let was = |f: FaceId| was.map_or(Some(f), |list| list.get(f.index()).copied().flatten());

@@ -8,6 +8,8 @@ use crate::corners::Corners;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 use crate::validate::{MeshProblem, area_vector, position_problems, validate};
 use glam::DVec3;
+use rayon::prelude::*;
+use smallvec::SmallVec;
 use std::ops::Range;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -315,20 +317,17 @@ impl PolygonMesh {
 
     /// Area vector of a face (Newell): its length is the area [m²], its direction the front.
     pub fn face_area_vector(&self, face: FaceId) -> DVec3 {
-        let points: Vec<DVec3> = self.face_vertices(face).map(|v| self.position(v)).collect();
+        let points: SmallVec<[DVec3; 8]> = self.face_vertices(face).map(|v| self.position(v)).collect();
         area_vector(&points)
     }
 
     /// Unit normals at the vertices, area-weighted, [vertex_count].
     pub fn vertex_normals(&self) -> Vec<DVec3> {
-        let mut normals = vec![DVec3::ZERO; self.positions.len()];
-        for face in self.faces() {
-            let area = self.face_area_vector(face);
-            for v in self.face_vertices(face) {
-                normals[v.index()] += area;
-            }
-        }
-        normals.into_iter().map(|n| n.normalize_or(DVec3::Z)).collect()
+        let areas: Vec<DVec3> =
+            (0..self.face_count()).into_par_iter().map(|f| self.face_area_vector(FaceId::new(f))).collect();
+        let around = |v: u32| self.corners.at(v).iter().map(|c| self.half_edges[c.half_edge as usize].face);
+        let normal = |v: u32| around(v).map(|f| areas[f.index()]).sum::<DVec3>().normalize_or(DVec3::Z);
+        (0..self.positions.len() as u32).into_par_iter().map(normal).collect()
     }
 
     /// Smallest and largest coordinates [m].

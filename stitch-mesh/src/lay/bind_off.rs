@@ -29,7 +29,7 @@ pub(super) enum Way {
 }
 
 /// Cells with joined ports above a run of top edges (which come right to left); the cells come left to right.
-pub(super) fn cells(run: &[HalfEdgeId], draft: &mut Draft) -> Vec<BindOffCell> {
+pub(super) fn cells(run: &[HalfEdgeId], draft: &mut Draft<'_>) -> Vec<BindOffCell> {
     let cells: Vec<BindOffCell> = run
         .iter()
         .rev()
@@ -52,7 +52,7 @@ pub(super) fn lay(
     vertex_normals: &[DVec3],
     cells: &[BindOffCell],
     way: Way,
-    draft: &mut Draft,
+    draft: &mut Draft<'_>,
 ) -> Option<Port> {
     let n = cells.len();
     let tops: Vec<[Port; 2]> = (0..n).map(|_| [draft.new_port(), draft.new_port()]).collect();
@@ -107,7 +107,7 @@ impl Place {
     }
 
     /// Puts a stitch with this many bottoms here.
-    fn add(&self, stitch: &Stitch, bottoms: usize, ports: &[Port], draft: &mut Draft) {
+    fn add(&self, stitch: &Stitch, bottoms: usize, ports: &[Port], draft: &mut Draft<'_>) {
         let [a, b, c, d] = self.corners;
         // Corners in the order of a face, its lower side cut into the bottoms.
         let mut corners: SmallVec<[DVec3; 6]> =
@@ -119,13 +119,13 @@ impl Place {
             corners[bottoms + 1] = 0.5 * (c + d);
         }
         let normals = vec![self.normal; corners.len()];
-        let cell = Cell { corners: &corners, normals: &normals, face: None, dye: self.dye };
+        let cell = Cell { corners: &corners, normals: &normals, dye: self.dye };
         draft.add_beyond(stitch, &cell, ports);
     }
 }
 
 /// Draws the yarn that leaves at `from` through the last loop.
-fn fasten(last: [Port; 2], from: Port, way: Way, place: Place, draft: &mut Draft) -> Port {
+fn fasten(last: [Port; 2], from: Port, way: Way, place: Place, draft: &mut Draft<'_>) -> Port {
     let [left, right, _, upper] = place.corners;
     let sense = if way == Way::Leftwards { -1.0 } else { 1.0 };
     let beyond = (right - left) * 0.8 * sense + (upper - left) * 0.3;

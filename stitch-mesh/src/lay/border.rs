@@ -11,7 +11,7 @@
 //! forth from cast-on to bind-off, and so do the panels above an armhole. What stays loose gets a tail.
 
 use super::bind_off::{self, BindOffCell, Way};
-use super::draft::{Draft, PieceAt};
+use super::draft::Draft;
 use super::spiral::Spiral;
 use super::{Port, course_port, wale_port};
 use crate::ids::HalfEdgeId;
@@ -48,7 +48,7 @@ pub(super) fn finish(
     rows: &[Row],
     vertex_normals: &[DVec3],
     spirals: &[Spiral],
-    draft: &mut Draft,
+    draft: &mut Draft<'_>,
 ) -> BoundOff {
     let mesh = stitches.mesh();
     let mut height = vec![0.0; mesh.face_count()];
@@ -109,12 +109,11 @@ pub(super) fn finish(
         circles.push(circle);
     }
     // Whatever else ends at a border is found by following its yarn from end to end.
-    let piece_at = PieceAt::of(draft);
     let mut ended: HashSet<Port> = strands.iter().flat_map(|s| s.ends).collect();
     let heights: HashMap<Port, f64> = circles.iter().flatten().copied().collect();
     for (port, height) in circles.iter().flatten() {
         if ended.insert(*port)
-            && let Some(other) = piece_at.end_of(draft, *port)
+            && let Some(other) = draft.end_of(*port)
             && ended.insert(other)
         {
             let height = heights.get(&other).map_or(*height, |h| h.min(*height));
@@ -157,7 +156,7 @@ fn begin_at_face(run: &mut [HalfEdgeId], face: crate::ids::FaceId, stitches: &St
 }
 
 /// Joins the loops on a run of bottom edges, left to right. Returns the ends.
-fn cast_on(run: &[HalfEdgeId], draft: &mut Draft) -> [Port; 2] {
+fn cast_on(run: &[HalfEdgeId], draft: &mut Draft<'_>) -> [Port; 2] {
     for pair in run.windows(2) {
         draft.join(course_port(pair[0], 1), course_port(pair[1], 0));
     }
@@ -165,7 +164,7 @@ fn cast_on(run: &[HalfEdgeId], draft: &mut Draft) -> [Port; 2] {
 }
 
 /// Closes the loop on a live edge over a node of its own, as over a needle.
-fn leave_live(stitches: &StitchMesh, vertex_normals: &[DVec3], h: HalfEdgeId, draft: &mut Draft) {
+fn leave_live(stitches: &StitchMesh, vertex_normals: &[DVec3], h: HalfEdgeId, draft: &mut Draft<'_>) {
     let mesh = stitches.mesh();
     let (left, right) = (mesh.tip(h), mesh.origin(h));
     let face = mesh.face(h);
@@ -182,7 +181,7 @@ fn join_strands(
     vertex_normals: &[DVec3],
     strands: &[Strand],
     circles: Vec<Vec<Port>>,
-    draft: &mut Draft,
+    draft: &mut Draft<'_>,
 ) {
     let mut strand_at: HashMap<Port, (usize, usize)> = HashMap::new();
     for (s, strand) in strands.iter().enumerate() {

@@ -26,13 +26,13 @@ const ARRIVES: [f64; 2] = [0.22, 0.78];
 const ASIDE: f64 = 0.08;
 
 /// Lays all cables across the edges that [`Draft::of_faces`] has joined straight.
-pub fn cross(stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft) {
+pub fn cross(stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft<'_>) {
     for cable in stitches.cables() {
         lay(cable, stitches, vertex_normals, draft);
     }
 }
 
-fn lay(cable: &Cable, stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft) {
+fn lay(cable: &Cable, stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &mut Draft<'_>) {
     let mesh = stitches.mesh();
     let strip = Strip::of(cable, stitches, vertex_normals);
     let crossing = cable.crossing();
@@ -71,8 +71,7 @@ fn lay(cable: &Cable, stitches: &StitchMesh, vertex_normals: &[DVec3], draft: &m
         let dye = stitches.dyes()[mesh.face(tops[below]).index()];
         let first = draft.add_piece([from, to], &nodes, dye, false);
         for (i, pair) in nodes.windows(2).enumerate() {
-            let length =
-                draft.nodes[pair[0].index()].position.distance(draft.nodes[pair[1].index()].position);
+            let length = draft.node(pair[0]).0.position.distance(draft.node(pair[1]).0.position);
             draft.take_in.push((first + i as u32, (1.0 - TAKEN_IN) * length));
         }
     }
@@ -107,7 +106,7 @@ impl Strip {
     }
 
     /// Adds a node at `across` loops from the left and at `height` of the strip.
-    fn node(&self, draft: &mut Draft, across: f64, height: f64) -> NodeId {
+    fn node(&self, draft: &mut Draft<'_>, across: f64, height: f64) -> NodeId {
         let i = (across.floor().max(0.0) as usize).min(self.points.len() - 2);
         let s = across - i as f64;
         let [point, down, up] = [0, 1, 2].map(|k| self.points[i][k].lerp(self.points[i + 1][k], s));

@@ -1,163 +1,153 @@
 //! Pieces of yarn and how they are joined, before they are yarns.
 
 use super::Port;
-use super::template::{LocalPorts, Template};
+use super::faces::FaceYarn;
+use super::template::{Template, TemplateNode};
 use crate::dye::Dye;
-use crate::ids::{FaceId, HalfEdgeId, NodeId, VisitId};
+use crate::ids::{NodeId, VisitId};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::{Node, NodeKind, StitchContact};
 use glam::DVec3;
-use rayon::prelude::*;
 use smallvec::SmallVec;
-use std::collections::HashMap;
+use std::ops::Range;
 
 /// No port: an end.
 pub(super) const LOOSE: Port = Port::MAX;
 
-/// No piece.
-const NONE: u32 = u32::MAX;
-
 /// A stretch of yarn inside one cell, from port to port.
-#[derive(Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct Piece<'a> {
+    /// Counted over all pieces, those of the faces first.
+    pub number: u32,
     pub from: Port,
     pub to: Port,
-    /// Its visits in [`Draft::visits`], in order.
+    /// The first of its visits; the others follow.
     pub first: u32,
-    pub end: u32,
+    /// The nodes of its visits, less [`Self::nodes_before`].
+    pub nodes: &'a [u32],
+    pub nodes_before: u32,
     /// The colour of its yarn, if it is of the row's own yarn; else it has the colour with which its loop was made, and this
     /// one only where nothing says which that is.
     pub dye: Dye,
     pub own: bool,
 }
 
-/// See the module. Visits in nodes and contacts are counted as in `visits` until [`super::trace`] numbers them anew.
-#[derive(Default)]
-pub(super) struct Draft {
+/// A piece beyond the faces; its visits are a range of [`Draft::visits`].
+struct PieceBeyond {
+    from: Port,
+    to: Port,
+    visits: Range<usize>,
+    dye: Dye,
+    own: bool,
+}
+
+/// The yarn of the faces and what is laid beyond them: cables, borders, seams. See the module. Nodes, visits and pieces beyond
+/// are numbered after those of the faces; visits in nodes and contacts are counted so until [`super::trace`] numbers them anew.
+pub(super) struct Draft<'a> {
+    pub faces: FaceYarn<'a>,
+    /// Nodes beyond the faces.
     pub nodes: Vec<Node>,
-    /// For every node the vector along the row out of the cell on the nearer side: where the yarn goes when it turns back or
-    /// ends there [m].
-    pub outward: Vec<DVec3>,
-    /// The node of every visit.
-    pub visits: Vec<NodeId>,
-    pub pieces: Vec<Piece>,
+    /// For each of these the way outward: see [`Self::node`].
+    outward: Vec<DVec3>,
+    /// The node of every visit beyond the faces.
+    visits: Vec<u32>,
+    pieces: Vec<PieceBeyond>,
+    /// For every port that lies on no half-edge the piece that begins or ends there.
+    piece_at: Vec<Option<u32>>,
+    /// Contacts beyond the faces.
     pub contacts: Vec<StitchContact>,
     /// For every port the one it is joined to, or [`LOOSE`].
-    pub joined: Vec<Port>,
+    joined: Vec<Port>,
     /// Lengths to be taken in: the visit at one end of a piece's segment, in its direction, and the length [m].
     pub take_in: Vec<(u32, f64)>,
 }
 
-/// Faces whose yarn is placed by one thread at a time.
-const CHUNK: usize = 2048;
-
-impl Draft {
+impl<'a> Draft<'a> {
     /// The yarn of all faces, joined across the edges between them.
-    pub fn of_faces(stitches: &StitchMesh, vertex_normals: &[DVec3]) -> Self {
-        let mesh = stitches.mesh();
-        let (templates, of_face) = templates(stitches);
-        // Where the nodes, visits and so on of each chunk begin.
-        let mut starts = vec![[0u32; 2]];
-        let mut end = [0u32; 2];
-        for chunk in of_face.chunks(CHUNK) {
-            for t in chunk {
-                let t = &templates[*t as usize];
-                end = [end[0] + t.nodes.len() as u32, end[1] + t.visits.len() as u32];
-            }
-            starts.push(end);
+    pub fn of_faces(stitches: &'a StitchMesh, vertex_normals: &'a [DVec3]) -> Self {
+        let faces = FaceYarn::of(stitches, vertex_normals);
+        Self {
+            joined: faces.joined_across_edges(),
+            faces,
+            nodes: Vec::new(),
+            outward: Vec::new(),
+            visits: Vec::new(),
+            pieces: Vec::new(),
+            piece_at: Vec::new(),
+            contacts: Vec::new(),
+            take_in: Vec::new(),
         }
-        let chunks: Vec<Self> = of_face
-            .par_chunks(CHUNK)
-            .enumerate()
-            .map(|(c, chunk)| {
-                let mut draft = Self::default();
-                let [node, visit] = starts[c];
-                for (i, t) in chunk.iter().enumerate() {
-                    let face = FaceId::new(c * CHUNK + i);
-                    let first = mesh.first_half_edge(face).0;
-                    let corners: SmallVec<[DVec3; 8]> =
-                        mesh.face_vertices(face).map(|v| mesh.position(v)).collect();
-                    let normals: SmallVec<[DVec3; 8]> =
-                        mesh.face_vertices(face).map(|v| vertex_normals[v.index()]).collect();
-                    let cell = Cell {
-                        corners: &corners,
-                        normals: &normals,
-                        face: Some(face),
-                        dye: stitches.dyes()[face.index()],
-                    };
-                    draft.add(&templates[*t as usize], &cell, [node, visit], |p| 2 * first + Port::from(p));
-                }
-                draft
-            })
-            .collect();
-        let mut all = Self::default();
-        all.nodes.reserve_exact(end[0] as usize);
-        all.visits.reserve_exact(end[1] as usize);
-        for mut chunk in chunks {
-            all.nodes.append(&mut chunk.nodes);
-            all.outward.append(&mut chunk.outward);
-            all.visits.append(&mut chunk.visits);
-            all.pieces.append(&mut chunk.pieces);
-            all.contacts.append(&mut chunk.contacts);
-        }
-        all.joined = joined_across_edges(stitches);
-        all
     }
 
-    /// Adds the yarn of one cell. `offset` is added to the numbers of nodes and visits, as the draft may be one of several.
-    fn add(&mut self, template: &Template, cell: &Cell<'_>, offset: [u32; 2], port: impl Fn(u16) -> Port) {
-        let node = offset[0] + self.nodes.len() as u32;
-        let visit = offset[1] + self.visits.len() as u32;
-        for n in &template.nodes {
-            let mean = |weights: &[f64], of: &[DVec3]| of.iter().zip(weights).map(|(c, w)| *c * *w).sum();
-            self.nodes.push(Node {
-                position: mean(&n.weights, cell.corners),
-                normal: DVec3::normalize_or(mean(&n.weights, cell.normals), DVec3::Z),
-                visits: n.stack.iter().map(|v| VisitId(visit + u32::from(*v))).collect(),
-                face: cell.face,
-                kind: n.kind,
-            });
-            self.outward.push(mean(&n.outward, cell.corners));
-        }
-        self.visits.extend(template.visits.iter().map(|n| NodeId(node + u32::from(*n))));
-        self.pieces.extend(template.pieces.iter().map(|p| Piece {
-            from: port(p.from),
-            to: port(p.to),
-            first: visit + u32::from(p.visits.start),
-            end: visit + u32::from(p.visits.end),
-            dye: cell.dye,
-            own: p.own,
-        }));
-        let id = |v: u16| VisitId(visit + u32::from(v));
-        self.contacts.extend(template.contacts.iter().map(|c| StitchContact {
-            handedness: c.handedness,
-            new: c.new.map(id),
-            old: c.old.iter().map(|o| o.map(id)).collect(),
-        }));
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.faces.node_count() + self.nodes.len()
     }
 
-    /// Adds the yarn of a cell that lies beyond the border. Ports are given in the order of a face's.
+    /// Number of visits.
+    pub fn visit_count(&self) -> usize {
+        self.faces.visit_count() + self.visits.len()
+    }
+
+    /// Number of pieces.
+    pub fn piece_count(&self) -> usize {
+        self.faces.piece_count() + self.pieces.len()
+    }
+
+    /// Adds the yarn of a cell that lies beyond the border. Ports lie on no half-edge, and are given in the order of a face's.
     pub fn add_beyond(&mut self, stitch: &Stitch, cell: &Cell<'_>, ports: &[Port]) {
-        debug_assert_eq!(ports.len(), LocalPorts { bottoms: stitch.bottoms(), tops: stitch.tops() }.count());
-        self.add(&Template::of(stitch), cell, [0, 0], |p| ports[usize::from(p)]);
+        let template = Template::of(stitch);
+        debug_assert_eq!(ports.len(), template.ports.count());
+        let (node, visit) = (self.node_count() as u32, self.visit_count() as u32);
+        let id = |v: u16| VisitId(visit + u32::from(v));
+        for n in &template.nodes {
+            let (node, outward) = cell.node(n, id);
+            self.nodes.push(node);
+            self.outward.push(outward);
+        }
+        let visits = self.visits.len();
+        self.visits.extend(template.visits.iter().map(|n| node + n));
+        for p in &template.pieces {
+            let [from, to] = [p.from, p.to].map(|p| ports[usize::from(p)]);
+            let visits = visits + usize::from(p.visits.start)..visits + usize::from(p.visits.end);
+            self.push_piece(PieceBeyond { from, to, visits, dye: cell.dye, own: p.own });
+        }
+        self.contacts.extend(template.contacts.iter().map(|c| c.numbered(id)));
     }
 
-    /// Adds a node that no yarn visits yet. `outward` as in [`Self::outward`].
+    fn push_piece(&mut self, piece: PieceBeyond) {
+        for port in [piece.from, piece.to] {
+            self.piece_at[port as usize - self.faces.port_count()] = Some(self.pieces.len() as u32);
+        }
+        self.pieces.push(piece);
+    }
+
+    /// Adds a node that no yarn visits yet. `outward` as in [`Self::node`].
     pub fn add_node(&mut self, position: DVec3, normal: DVec3, kind: NodeKind, outward: DVec3) -> NodeId {
         self.nodes.push(Node { position, normal, visits: SmallVec::new(), face: None, kind });
         self.outward.push(outward);
-        NodeId::new(self.nodes.len() - 1)
+        NodeId::new(self.node_count() - 1)
     }
 
-    /// Adds a piece that visits `nodes` in order, behind the yarns that are there already. Returns its first visit.
-    pub fn add_piece(&mut self, [from, to]: [Port; 2], nodes: &[NodeId], dye: Dye, own: bool) -> u32 {
-        let first = self.visits.len() as u32;
-        for node in nodes {
-            self.nodes[node.index()].visits.push(VisitId::new(self.visits.len()));
-            self.visits.push(*node);
+    /// A node, and the way outward from it: the vector along the row out of the cell on the nearer side, where the yarn goes
+    /// when it turns back or ends there [m].
+    pub fn node(&self, node: NodeId) -> (Node, DVec3) {
+        match node.index().checked_sub(self.faces.node_count()) {
+            None => (self.faces.node(node), self.faces.outward(node)),
+            Some(i) => (self.nodes[i].clone(), self.outward[i]),
         }
-        self.pieces.push(Piece { from, to, first, end: self.visits.len() as u32, dye, own });
+    }
+
+    /// Adds a piece that visits `nodes`, all beyond the faces, in order, behind the yarns that are there already. Its ports lie
+    /// on no half-edge. Returns its first visit.
+    pub fn add_piece(&mut self, [from, to]: [Port; 2], nodes: &[NodeId], dye: Dye, own: bool) -> u32 {
+        let (first, start) = (self.visit_count() as u32, self.visits.len());
+        for node in nodes {
+            let visit = VisitId::new(self.visit_count());
+            self.nodes[node.index() - self.faces.node_count()].visits.push(visit);
+            self.visits.push(node.0);
+        }
+        self.push_piece(PieceBeyond { from, to, visits: start..self.visits.len(), dye, own });
         first
     }
 
@@ -172,6 +162,7 @@ impl Draft {
     /// A port that lies on no half-edge: at cast-on, bind-off and ends.
     pub fn new_port(&mut self) -> Port {
         self.joined.push(LOOSE);
+        self.piece_at.push(None);
         (self.joined.len() - 1) as Port
     }
 
@@ -196,39 +187,53 @@ impl Draft {
         let other = self.joined[port as usize];
         (other != LOOSE).then_some(other)
     }
-}
 
-/// The pieces by the ports at which they begin and end.
-pub(super) struct PieceAt(Vec<u32>);
-
-impl PieceAt {
-    /// Of all pieces of a draft.
-    pub fn of(draft: &Draft) -> Self {
-        let mut at = vec![NONE; draft.joined.len()];
-        for (i, piece) in draft.pieces.iter().enumerate() {
-            at[piece.from as usize] = i as u32;
-            at[piece.to as usize] = i as u32;
+    /// The piece that begins or ends at a port.
+    pub fn piece_at(&self, port: Port) -> Option<Piece<'_>> {
+        match (port as usize).checked_sub(self.faces.port_count()) {
+            None => self.faces.piece_at(port),
+            Some(beyond) => self.piece_at[beyond].map(|i| self.piece_beyond(i as usize)),
         }
-        Self(at)
     }
 
-    /// The piece at a port.
-    pub fn get(&self, port: Port) -> Option<usize> {
-        self.0.get(port as usize).filter(|p| **p != NONE).map(|p| *p as usize)
+    fn piece_beyond(&self, i: usize) -> Piece<'_> {
+        let PieceBeyond { from, to, ref visits, dye, own } = self.pieces[i];
+        Piece {
+            number: (self.faces.piece_count() + i) as u32,
+            from,
+            to,
+            first: (self.faces.visit_count() + visits.start) as u32,
+            nodes: &self.visits[visits.clone()],
+            nodes_before: 0,
+            dye,
+            own,
+        }
+    }
+
+    /// Both ports of all pieces, in the order of their numbers.
+    pub fn ends(&self) -> impl Iterator<Item = [Port; 2]> {
+        self.faces.ends().chain(self.pieces.iter().map(|p| [p.from, p.to]))
+    }
+
+    fn has_piece_at(&self, port: Port) -> bool {
+        match (port as usize).checked_sub(self.faces.port_count()) {
+            None => self.faces.has_piece_at(port),
+            Some(beyond) => self.piece_at[beyond].is_some(),
+        }
     }
 
     /// Whether yarn ends at a port: nothing goes on from there.
-    pub fn is_loose(&self, draft: &Draft, port: Port) -> bool {
-        draft.other_side(port).is_none_or(|other| self.get(other).is_none())
+    pub fn is_loose(&self, port: Port) -> bool {
+        self.other_side(port).is_none_or(|other| !self.has_piece_at(other))
     }
 
     /// The port at which the yarn that enters a piece at `from` ends loose; none for a ring.
-    pub fn end_of(&self, draft: &Draft, from: Port) -> Option<Port> {
+    pub fn end_of(&self, from: Port) -> Option<Port> {
         let mut entry = from;
         loop {
-            let piece = &draft.pieces[self.get(entry)?];
+            let piece = self.piece_at(entry)?;
             let exit = if entry == piece.from { piece.to } else { piece.from };
-            match draft.other_side(exit).filter(|next| self.get(*next).is_some()) {
+            match self.other_side(exit).filter(|next| self.has_piece_at(*next)) {
                 Some(next) if next == from => return None,
                 Some(next) => entry = next,
                 None => return Some(exit),
@@ -237,46 +242,26 @@ impl PieceAt {
     }
 }
 
-/// Where the yarn of a stitch is put.
+/// Where the yarn of a stitch beyond the faces is put.
 pub(super) struct Cell<'a> {
     /// Corners in the order of a face: from the lower left, counter-clockwise [m].
     pub corners: &'a [DVec3],
     /// Unit normals at the corners.
     pub normals: &'a [DVec3],
-    pub face: Option<FaceId>,
     pub dye: Dye,
 }
 
-/// The templates of all stitches of a mesh, and which of them each face has.
-fn templates(stitches: &StitchMesh) -> (Vec<Template>, Vec<u32>) {
-    let mut templates: Vec<Template> = Vec::new();
-    let mut known: HashMap<&Stitch, u32> = HashMap::new();
-    let mut of_face = Vec::with_capacity(stitches.stitches().len());
-    let mut last: Option<(&Stitch, u32)> = None;
-    for stitch in stitches.stitches() {
-        let template = match last {
-            Some((same, template)) if same == stitch => template,
-            _ => *known.entry(stitch).or_insert_with(|| {
-                templates.push(Template::of(stitch));
-                (templates.len() - 1) as u32
-            }),
+impl Cell<'_> {
+    /// A node of a template put here, its visits numbered by `number`, and the way outward from it.
+    fn node(&self, node: &TemplateNode, number: impl Fn(u16) -> VisitId) -> (Node, DVec3) {
+        let mean = |weights: &[f64], of: &[DVec3]| of.iter().zip(weights).map(|(c, w)| *c * *w).sum();
+        let placed = Node {
+            position: mean(&node.weights, self.corners),
+            normal: DVec3::normalize_or(mean(&node.weights, self.normals), DVec3::Z),
+            visits: node.stack.iter().map(|v| number(*v)).collect(),
+            face: None,
+            kind: node.kind,
         };
-        last = Some((stitch, template));
-        of_face.push(template);
+        (placed, mean(&node.outward, self.corners))
     }
-    (templates, of_face)
-}
-
-/// For every port of a half-edge the one across its edge.
-fn joined_across_edges(stitches: &StitchMesh) -> Vec<Port> {
-    let mesh = stitches.mesh();
-    let across = |h: u32| {
-        let h = HalfEdgeId(h);
-        match mesh.twin(h) {
-            None => [LOOSE, LOOSE],
-            Some(twin) if stitches.is_wale(h) => [super::wale_port(twin), LOOSE],
-            Some(twin) => [super::course_port(twin, 1), super::course_port(twin, 0)],
-        }
-    };
-    (0..mesh.half_edge_count() as u32).into_par_iter().flat_map_iter(across).collect()
 }

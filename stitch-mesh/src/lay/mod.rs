@@ -16,7 +16,7 @@
 //! yarns of Yuksel et al. Fig. 8 come out by themselves.
 //!
 //! # Practice
-//! 1. `template`: the yarn of a stitch; `draft`: put on every face, and ports joined across edges;
+//! 1. `template`: the yarn of a stitch; `faces`: put on every face; `draft`: ports joined across edges;
 //! 2. `cable`: loops that change places on their way up;
 //! 3. `spiral`: closed rows joined into one another, where asked for;
 //! 4. `border`: cast-on along bottom edges, bind-off along top edges (`bind_off`), rows joined at their ends so that a flat
@@ -31,13 +31,15 @@
 //! than it lies at first (cables, seams), the net says by how much it is taken in.
 //!
 //! # Speed
-//! Templates are made once for each kind of stitch, so placing a node costs one weighted sum of corners, and following yarn
-//! is a walk over flat arrays. After an edit that leaves all yarns where they run, [`relay`] takes the net from before.
+//! What a stitch lays follows from its template and from how much lies in the faces before, so no face's yarn is written down
+//! before it is in the net (`faces`): half of the time had gone into memory that was touched for the first time. Nodes are
+//! placed by one thread while another follows the yarn. After an edit that leaves all yarns where they run, [`relay`] takes the net from before.
 
 mod bind_off;
 mod border;
 mod cable;
 mod draft;
+mod faces;
 mod relay;
 mod seam;
 mod spiral;
@@ -57,14 +59,13 @@ pub use relay::relay;
 
 /// Lays the yarn of a stitch mesh. The same mesh always gives the same net.
 pub fn lay(stitches: &StitchMesh) -> YarnNet {
-    let normals = stitches.mesh().vertex_normals();
+    let (normals, rows) = rayon::join(|| stitches.mesh().vertex_normals(), || stitches.rows());
     let mut draft = Draft::of_faces(stitches, &normals);
     cable::cross(stitches, &normals, &mut draft);
-    let rows = stitches.rows();
     let spirals = if stitches.marks().spiral { spiral::wind(stitches, &rows, &mut draft) } else { vec![] };
     let bound_off = border::finish(stitches, &rows, &normals, &spirals, &mut draft);
     seam::sew(stitches, &normals, &bound_off, &mut draft);
-    trace::trace(stitches, draft)
+    trace::trace(draft)
 }
 
 /// A place where yarn crosses an edge: two for each half-edge of the mesh, and more beyond its borders.

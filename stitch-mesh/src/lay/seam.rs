@@ -18,7 +18,12 @@ const STITCH: f64 = 0.3;
 const INSET: f64 = 0.12;
 
 /// Lays all seams.
-pub(super) fn sew(stitches: &StitchMesh, vertex_normals: &[DVec3], bound_off: &BoundOff, draft: &mut Draft) {
+pub(super) fn sew(
+    stitches: &StitchMesh,
+    vertex_normals: &[DVec3],
+    bound_off: &BoundOff,
+    draft: &mut Draft<'_>,
+) {
     for seam in stitches.seams() {
         lay(seam, stitches, vertex_normals, bound_off, draft);
     }
@@ -29,7 +34,7 @@ fn lay(
     stitches: &StitchMesh,
     vertex_normals: &[DVec3],
     bound_off: &BoundOff,
-    draft: &mut Draft,
+    draft: &mut Draft<'_>,
 ) {
     let mesh = stitches.mesh();
     // Edges of both sides by how far along their side they lie; at a tie the first side comes first.
@@ -67,13 +72,13 @@ fn lay(
     let first = draft.add_piece(ends, &nodes, dye.unwrap_or_default(), true);
     let pulled = STITCH * width / nodes.len().max(1) as f64;
     for (i, pair) in nodes.windows(2).enumerate() {
-        let length = draft.nodes[pair[0].index()].position.distance(draft.nodes[pair[1].index()].position);
+        let length = draft.node(pair[0]).0.position.distance(draft.node(pair[1]).0.position);
         draft.take_in.push((first + i as u32, (length - pulled).max(0.0)));
     }
 }
 
 /// Leads the yarn at a border port through `node`.
-fn catch(draft: &mut Draft, node: NodeId, port: Port, dye: crate::dye::Dye) {
+fn catch(draft: &mut Draft<'_>, node: NodeId, port: Port, dye: crate::dye::Dye) {
     match draft.other_side(port) {
         Some(other) => draft.join_through(node, [port, other], dye),
         None => {

@@ -20,7 +20,7 @@ pub struct Spiral {
 }
 
 /// Winds the closed rows of `rows` (as [`StitchMesh::rows`] gives them) into spirals.
-pub fn wind(stitches: &StitchMesh, rows: &[Row], draft: &mut Draft) -> Vec<Spiral> {
+pub fn wind(stitches: &StitchMesh, rows: &[Row], draft: &mut Draft<'_>) -> Vec<Spiral> {
     let closed: Vec<&Row> = rows.iter().filter(|r| r.closed).collect();
     let begins: HashMap<_, usize> = closed.iter().enumerate().map(|(i, r)| (r.faces[0], i)).collect();
     let above = |i: usize| {

@@ -9,9 +9,10 @@
 //! here the order of the yarns at the node, front to back; how far apart they lie is the business of whoever draws them.
 //! Ports are counted as the half-edges of the face, so a template is put on a face by adding numbers.
 
+use crate::ids::VisitId;
 use crate::mean_value::{mean_value_weights, reference_polygon};
 use crate::stitch::{Make, Op, Stitch};
-use crate::yarn_net::NodeKind;
+use crate::yarn_net::{NodeKind, StitchContact};
 use glam::DVec2;
 use smallvec::{SmallVec, smallvec};
 
@@ -60,12 +61,26 @@ pub(super) struct TemplateContact {
     pub old: SmallVec<[[LocalVisit; 2]; 1]>,
 }
 
+impl TemplateContact {
+    /// The contact with its visits numbered.
+    pub fn numbered(&self, number: impl Fn(LocalVisit) -> VisitId) -> StitchContact {
+        StitchContact {
+            handedness: self.handedness,
+            new: self.new.map(&number),
+            old: self.old.iter().map(|o| o.map(&number)).collect(),
+        }
+    }
+}
+
 /// All yarn of one stitch.
 pub(super) struct Template {
+    pub ports: LocalPorts,
     pub nodes: Vec<TemplateNode>,
     /// The node of every visit.
-    pub visits: Vec<u16>,
+    pub visits: Vec<u32>,
     pub pieces: Vec<TemplatePiece>,
+    /// For every port the piece that begins or ends there.
+    pub piece_at: Vec<Option<u16>>,
     pub contacts: Vec<TemplateContact>,
 }
 
@@ -97,6 +112,11 @@ impl LocalPorts {
     /// Where it goes out on the right.
     pub fn right(self) -> LocalPort {
         2 * self.bottoms as LocalPort
+    }
+
+    /// Whether the half-edge at `i` in the face is a wale edge.
+    pub fn is_wale(self, i: usize) -> bool {
+        i == self.bottoms || i == self.bottoms + 1 + self.tops
     }
 
     /// Number of ports.
@@ -143,7 +163,7 @@ impl Template {
         for (i, mut loop_) in old.into_iter().enumerate().filter(|_| stitch.holds()) {
             draft.end(&mut loop_, ports.bottom(i)[1], 0, false);
         }
-        draft.finish()
+        draft.finish(ports)
     }
 }
 
@@ -230,7 +250,7 @@ impl Draft {
     }
 
     /// Numbers the visits along the pieces.
-    fn finish(mut self) -> Template {
+    fn finish(mut self, ports: LocalPorts) -> Template {
         let mut number = vec![0; self.visits.len()];
         let mut visits = Vec::with_capacity(self.visits.len());
         let mut pieces = Vec::with_capacity(self.pieces.len());
@@ -238,7 +258,7 @@ impl Draft {
             let first = visits.len() as LocalVisit;
             for v in strand.visits {
                 number[usize::from(v)] = visits.len() as LocalVisit;
-                visits.push(self.visits[usize::from(v)]);
+                visits.push(u32::from(self.visits[usize::from(v)]));
             }
             pieces.push(TemplatePiece {
                 from: strand.from,
@@ -253,7 +273,11 @@ impl Draft {
             contact.new.iter_mut().for_each(renumber);
             contact.old.iter_mut().flatten().for_each(renumber);
         }
-        Template { nodes: self.nodes, visits, pieces, contacts: self.contacts }
+        let mut piece_at = vec![None; ports.count()];
+        for (i, piece) in pieces.iter().enumerate() {
+            [piece.from, piece.to].into_iter().for_each(|p| piece_at[usize::from(p)] = Some(i as u16));
+        }
+        Template { ports, nodes: self.nodes, visits, pieces, piece_at, contacts: self.contacts }
     }
 }
 

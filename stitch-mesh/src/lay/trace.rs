@@ -1,12 +1,13 @@
 //! From pieces to yarns: joined pieces are followed, loose ends get tails, arc lengths are measured.
 
-use super::draft::{Draft, Piece, PieceAt};
+use super::draft::Draft;
 use super::{Port, course_port};
 use crate::dye::Dye;
-use crate::ids::{NodeId, VisitId, YarnId};
+use crate::ids::{HalfEdgeId, NodeId, VisitId, YarnId};
 use crate::stitch_mesh::StitchMesh;
-use crate::yarn_net::{Loop, NodeKind, TakenIn, Visit, Yarn, YarnNet};
-use smallvec::SmallVec;
+use crate::yarn_net::{Loop, Node, NodeKind, TakenIn, Visit, Yarn, YarnNet};
+use rayon::prelude::*;
+use smallvec::smallvec;
 use std::sync::Arc;
 
 /// Length of a tail, in steps of [`Draft::outward`].
@@ -15,78 +16,110 @@ const TAIL: f64 = 1.2;
 /// The least yarn of a segment [m]: edits can fold faces so that nodes of two of them lie in one place.
 const SHORTEST: f64 = 1e-5;
 
-/// Not visited by any yarn.
-const NONE: u32 = u32::MAX;
-
 /// Makes the net of a draft.
-pub fn trace(stitches: &StitchMesh, draft: Draft) -> YarnNet {
-    let piece_at = PieceAt::of(&draft);
-    let mut used = vec![false; draft.pieces.len()];
-    let mut tracer = Tracer {
-        crossed: vec![None; 2 * stitches.mesh().half_edge_count()],
-        number: vec![NONE; draft.visits.len()],
-        visits: Vec::with_capacity(draft.visits.len() + 2),
-        yarns: Vec::new(),
-        dye: None,
-        draft,
-    };
-    // Open yarns first, from their loose ends, then what is left: rings.
-    for open in [true, false] {
-        for start in 0..used.len() {
-            let Piece { from, to, .. } = tracer.draft.pieces[start];
-            let from = match open {
-                _ if used[start] => continue,
-                true if piece_at.is_loose(&tracer.draft, from) => from,
-                true if piece_at.is_loose(&tracer.draft, to) => to,
-                false => from,
-                true => continue,
-            };
-            tracer.follow(&piece_at, from, open, &mut used);
-        }
+pub fn trace(mut draft: Draft<'_>) -> YarnNet {
+    let mut nodes = Vec::with_capacity(draft.node_count() + draft.node_count() / 8);
+    let (traced, ()) =
+        rayon::join(|| Tracer::all(&draft), || draft.faces.nodes().collect_into_vec(&mut nodes));
+    let Traced { number, crossed, mut visits, mut yarns, free } = traced;
+    let numbered = |v: u32| VisitId(number[v as usize]);
+    nodes.append(&mut draft.nodes);
+    nodes.par_iter_mut().for_each(|node| node.visits.iter_mut().for_each(|v| *v = numbered(v.0)));
+    nodes.extend(free);
+    for contact in &mut draft.contacts {
+        contact.new.iter_mut().chain(contact.old.iter_mut().flatten()).for_each(|v| *v = numbered(v.0));
     }
-    tracer.finish(stitches)
+    measure(&mut visits, &mut yarns, &nodes);
+    // A segment begins at whichever of its ends the yarn meets first.
+    let segment = |v: u32| numbered(v).min(numbered(v + 1));
+    let taken_in = draft.take_in.iter();
+    YarnNet {
+        taken_in: taken_in.map(|(v, length)| TakenIn { segment: segment(*v), length: *length }).collect(),
+        loops: loops(draft.faces.stitches(), &crossed),
+        nodes,
+        contacts: draft.faces.contacts(numbered).chain(std::mem::take(&mut draft.contacts)).collect(),
+        visits: Arc::new(visits),
+        yarns,
+    }
 }
 
-/// How yarn crosses an edge.
-#[derive(Clone, Copy)]
-struct Crossed {
-    /// How many visits there had been before.
-    visits: u32,
-    /// Whether it left the face of the half-edge, or came into it.
-    outwards: bool,
-}
+/// How yarn crosses an edge: how many visits there had been before, doubled, and one more if it left the face of the half-edge.
+type Crossed = u32;
 
-struct Tracer {
-    draft: Draft,
-    visits: Vec<Visit>,
-    yarns: Vec<Yarn>,
+/// Yarn does not cross.
+const NOT: Crossed = Crossed::MAX;
+
+/// What is found by following all yarns.
+struct Traced {
     /// For every visit of the draft its number in the net.
     number: Vec<u32>,
     /// For every port of a half-edge how the yarn crossed it.
-    crossed: Vec<Option<Crossed>>,
+    crossed: Vec<Crossed>,
+    /// All visits; where along their yarn has still to be measured.
+    visits: Vec<Visit>,
+    yarns: Vec<Yarn>,
+    /// Tails and turns, whose nodes come after those of the draft.
+    free: Vec<Node>,
+}
+
+struct Tracer<'a> {
+    draft: &'a Draft<'a>,
+    traced: Traced,
+    /// Which pieces have been followed.
+    used: Vec<bool>,
     /// The colour that goes on.
     dye: Option<Dye>,
 }
 
-impl Tracer {
+impl<'a> Tracer<'a> {
+    /// Follows all yarns: open ones first, from their loose ends, then what is left: rings.
+    fn all(draft: &'a Draft<'a>) -> Traced {
+        let mut tracer = Self {
+            draft,
+            traced: Traced {
+                number: vec![0; draft.visit_count()],
+                crossed: vec![NOT; draft.faces.port_count()],
+                visits: Vec::with_capacity(draft.visit_count() + 2),
+                yarns: Vec::new(),
+                free: Vec::new(),
+            },
+            used: vec![false; draft.piece_count()],
+            dye: None,
+        };
+        for (piece, ends) in draft.ends().enumerate() {
+            if !tracer.used[piece]
+                && let Some(end) = ends.into_iter().find(|end| draft.is_loose(*end))
+            {
+                tracer.follow(end, true);
+            }
+        }
+        for (piece, [from, _]) in draft.ends().enumerate() {
+            if !tracer.used[piece] {
+                tracer.follow(from, false);
+            }
+        }
+        tracer.traced
+    }
+
     /// Follows the yarn that enters a piece at `from` to its end, or round.
-    fn follow(&mut self, piece_at: &PieceAt, from: Port, open: bool, used: &mut [bool]) {
-        let start = self.visits.len();
+    fn follow(&mut self, from: Port, open: bool) {
+        let start = self.traced.visits.len();
         self.dye = None;
         let mut entry = from;
-        while let Some(at) = piece_at.get(entry) {
-            used[at] = true;
-            let Piece { from: begin, to: end, first, end: last, dye, own } = self.draft.pieces[at];
-            let forward = entry == begin;
-            if own {
-                self.dye = Some(dye);
+        while let Some(piece) = self.draft.piece_at(entry) {
+            self.used[piece.number as usize] = true;
+            let forward = entry == piece.from;
+            if piece.own {
+                self.dye = Some(piece.dye);
             }
+            let dye = self.dye.unwrap_or(piece.dye);
             self.cross(entry, false);
-            for i in 0..last - first {
-                let visit = if forward { first + i } else { last - 1 - i };
-                self.pass(visit, self.dye.unwrap_or(dye), start, open);
+            for i in 0..piece.nodes.len() {
+                let i = if forward { i } else { piece.nodes.len() - 1 - i };
+                let node = NodeId(piece.nodes_before + piece.nodes[i]);
+                self.pass(piece.first + i as u32, node, dye, start, open);
             }
-            let exit = if forward { end } else { begin };
+            let exit = if forward { piece.to } else { piece.from };
             self.cross(exit, true);
             match self.draft.other_side(exit) {
                 Some(next) if next != from => entry = next,
@@ -97,45 +130,47 @@ impl Tracer {
     }
 
     fn cross(&mut self, port: Port, outwards: bool) {
-        if let Some(crossed) = self.crossed.get_mut(port as usize) {
-            *crossed = Some(Crossed { visits: self.visits.len() as u32, outwards });
+        if let Some(crossed) = self.traced.crossed.get_mut(port as usize) {
+            *crossed = 2 * self.traced.visits.len() as Crossed + Crossed::from(outwards);
         }
     }
 
     /// Adds a visit to the yarn that began at `start`; before it a tail where a yarn begins, or a node of its own where it
     /// turns back to the node it comes from (a segment without length).
-    fn pass(&mut self, visit: u32, dye: Dye, start: usize, open: bool) {
-        let node = self.draft.visits[visit as usize];
-        if self.visits.len() == start {
+    fn pass(&mut self, visit: u32, node: NodeId, dye: Dye, start: usize, open: bool) {
+        if self.traced.visits.len() == start {
             if open {
                 self.free_node(node, TAIL, dye);
             }
-        } else if self.visits.last().is_some_and(|v| v.node == node) {
+        } else if self.traced.visits.last().is_some_and(|v| v.node == node) {
             self.free_node(node, 1.0, dye);
         }
-        self.number[visit as usize] = self.visits.len() as u32;
+        self.traced.number[visit as usize] = self.traced.visits.len() as u32;
         self.push(node, dye);
     }
 
     fn push(&mut self, node: NodeId, dye: Dye) {
-        self.visits.push(Visit { node, yarn: YarnId::new(self.yarns.len()), u: 0.0, dye });
+        let yarn = YarnId::new(self.traced.yarns.len());
+        self.traced.visits.push(Visit { node, yarn, u: 0.0, dye });
     }
 
     /// Adds a node with one visit, outwards of `beside`.
     fn free_node(&mut self, beside: NodeId, steps: f64, dye: Dye) {
-        let outward = self.draft.outward[beside.index()];
-        let at = &self.draft.nodes[beside.index()];
-        let (position, normal) = (at.position + outward * steps, at.normal);
-        let node = self.draft.add_node(position, normal, NodeKind::Free, outward);
-        let visit = self.draft.visits.len() as u32;
-        self.draft.visits.push(node);
-        self.draft.nodes[node.index()].visits.push(VisitId(visit));
-        self.number.push(self.visits.len() as u32);
+        let (at, outward) = self.draft.node(beside);
+        let node = NodeId::new(self.draft.node_count() + self.traced.free.len());
+        self.traced.free.push(Node {
+            position: at.position + outward * steps,
+            visits: smallvec![VisitId::new(self.traced.visits.len())],
+            face: None,
+            kind: NodeKind::Free,
+            ..at
+        });
         self.push(node, dye);
     }
 
     fn end_yarn(&mut self, start: usize, open: bool) {
-        let (Some(first), Some(last)) = (self.visits.get(start).copied(), self.visits.last().copied()) else {
+        let visits = &self.traced.visits;
+        let (Some(first), Some(last)) = (visits.get(start).copied(), visits.last().copied()) else {
             return;
         };
         if open {
@@ -143,60 +178,45 @@ impl Tracer {
         } else if first.node == last.node {
             self.free_node(last.node, 1.0, last.dye);
         }
-        let mut u = 0.0;
-        let position = |v: &Visit| self.draft.nodes[v.node.index()].position;
-        let mut before = position(&first);
-        for (i, visit) in self.visits[start..].iter_mut().enumerate() {
-            let here = position(visit);
-            u += if i == 0 { 0.0 } else { before.distance(here).max(SHORTEST) };
-            visit.u = u;
-            before = here;
-        }
-        self.yarns.push(Yarn {
-            visits: start as u32..self.visits.len() as u32,
-            period: (!open).then_some(u + before.distance(position(&first)).max(SHORTEST)),
-        });
+        let visits = start as u32..self.traced.visits.len() as u32;
+        self.traced.yarns.push(Yarn { visits, period: (!open).then_some(0.0) });
     }
+}
 
-    fn finish(mut self, stitches: &StitchMesh) -> YarnNet {
-        let number = &self.number;
-        let renumber = |v: &mut VisitId| v.0 = number[v.index()];
-        for node in &mut self.draft.nodes {
-            node.visits.iter_mut().for_each(renumber);
+/// Measures where along their yarns the visits lie.
+fn measure(visits: &mut [Visit], yarns: &mut [Yarn], nodes: &[Node]) {
+    let apart = |a: &Visit, b: &Visit| {
+        let [a, b] = [a, b].map(|v| nodes[v.node.index()].position);
+        a.distance(b).max(SHORTEST)
+    };
+    let lengths: Vec<f64> = visits.par_windows(2).map(|pair| apart(&pair[0], &pair[1])).collect();
+    for yarn in yarns {
+        let [start, end] = [yarn.visits.start, yarn.visits.end].map(|v| v as usize);
+        let mut u = 0.0;
+        for i in start + 1..end {
+            u += lengths[i - 1];
+            visits[i].u = u;
         }
-        for contact in &mut self.draft.contacts {
-            contact.new.iter_mut().for_each(renumber);
-            contact.old.iter_mut().flatten().for_each(renumber);
-        }
-        // A segment begins at whichever of its ends the yarn meets first.
-        let segment = |v: u32| VisitId(number[v as usize].min(number[v as usize + 1]));
-        let taken_in = self.draft.take_in.iter();
-        YarnNet {
-            taken_in: taken_in.map(|(v, length)| TakenIn { segment: segment(*v), length: *length }).collect(),
-            loops: loops(stitches, &self.crossed),
-            nodes: self.draft.nodes,
-            contacts: self.draft.contacts,
-            visits: Arc::new(self.visits),
-            yarns: self.yarns,
-        }
+        yarn.period = yarn.period.map(|_| u + apart(&visits[end - 1], &visits[start]));
     }
 }
 
 /// The loops of all stitches that go up into a stitch or a border, and come back. Others go up only: handed on from below by
 /// stitches whose rows run the other way.
-fn loops(stitches: &StitchMesh, crossed: &[Option<Crossed>]) -> Vec<Loop> {
+fn loops(stitches: &StitchMesh, crossed: &[Crossed]) -> Vec<Loop> {
     let mesh = stitches.mesh();
+    let goes_up = |h: &HalfEdgeId| mesh.twin(*h).is_none_or(|t| stitches.is_bottom(t));
     let mut loops = Vec::with_capacity(stitches.loop_count());
-    for face in mesh.faces() {
-        let ends: SmallVec<[_; 4]> = stitches.tops(face).collect();
-        for top in ends.into_iter().filter(|h| mesh.twin(*h).is_none_or(|t| stitches.is_bottom(t))) {
-            let [left, right] = [1, 0].map(|place| crossed[course_port(top, place) as usize]);
-            let (Some(left), Some(right)) = (left, right) else { continue };
-            let (up, down) = if left.visits <= right.visits { (left, right) } else { (right, left) };
-            // A loop that passes nothing at all is held by nothing, whichever way its yarn runs.
-            if up.visits == down.visits || up.outwards && !down.outwards {
-                loops.push(Loop { top, head: up.visits..down.visits });
-            }
+    for top in mesh.faces().flat_map(|f| stitches.tops(f)).filter(goes_up) {
+        let [left, right] = [1, 0].map(|place| crossed[course_port(top, place) as usize]);
+        if left == NOT || right == NOT {
+            continue;
+        }
+        let [up, down] = if left / 2 <= right / 2 { [left, right] } else { [right, left] };
+        let outwards = |crossed: Crossed| crossed % 2 == 1;
+        // A loop that passes nothing at all is held by nothing, whichever way its yarn runs.
+        if up / 2 == down / 2 || outwards(up) && !outwards(down) {
+            loops.push(Loop { top, head: up / 2..down / 2 });
         }
     }
     loops
