@@ -3,7 +3,7 @@
 use crate::clearance::least_distance;
 use crate::curves::curves;
 use crate::materials::Materials;
-use crate::model::Model;
+use crate::model::{Model, SegmentTerm};
 use crate::scene::Scene;
 use crate::step::clearances;
 use serde::{Deserialize, Serialize};
@@ -32,11 +32,12 @@ pub struct Facts {
 
 /// The figures that follow from a state; the others stay empty.
 pub(crate) fn measure(model: &Model, materials: &Materials, scene: &Scene, state: &YarnState) -> Facts {
-    let strain = |q: [f64; 8]| {
+    let strain = |term: &SegmentTerm| {
+        let q: [f64; 8] = term.stencil.coordinates(state);
         let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
-        r.length() / (q[7] - q[3]) - 1.0
+        r.length().hypot(term.climb) / (q[7] - q[3]) - 1.0
     };
-    let strains = model.segments.iter().map(|s| strain(s.stencil.coordinates(state)));
+    let strains = model.segments.iter().map(strain);
     let depth = |(x, clearance): (&glam::DVec3, f64)| {
         let gaps = scene.bodies.iter().map(|b| clearance - b.distance(*x).0);
         gaps.fold(0.0, f64::max)
