@@ -1,18 +1,21 @@
-//! Fabric: stitches and their yarn, as laid and as it has come to lie.
+//! Fabric: stitches, woven pieces and their yarn, as laid and as it has come to lie.
 
 use sim_core::{Facts, Operation, RestShape, Simulator, Surgery, SurgeryError};
 use std::sync::Arc;
 use stitch_mesh::ids::NodeId;
 use stitch_mesh::lay::{lay, relay};
 use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::weave::Woven;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
-/// Stitches and their yarn.
+/// What is knitted and what is woven, and all its yarn.
 #[derive(Clone, Debug)]
 pub struct Fabric {
-    /// The stitch mesh.
+    /// The stitch mesh; without stitches where nothing is knitted.
     pub stitches: Arc<StitchMesh>,
-    /// Its yarn as laid, and as surgery has left it.
+    /// Woven pieces.
+    pub woven: Arc<Vec<Woven>>,
+    /// The yarn as laid, and as surgery has left it: that of the stitches, then that of each woven piece.
     pub net: Arc<YarnNet>,
     /// Shapes of relaxed loops with which it was laid, so that it keeps its size; laid as drawn without them.
     pub rest_shape: Option<Arc<RestShape>>,
@@ -29,34 +32,66 @@ pub struct Fabric {
 impl Fabric {
     /// The fabric of a stitch mesh, its yarn just laid.
     pub fn new(stitches: StitchMesh) -> Self {
-        let net = lay(&stitches);
-        Self::of(stitches, net, None)
+        Self::laid(stitches, None, Arc::default())
     }
 
     /// The fabric of a stitch mesh with loops of these shapes, if any.
     pub fn with_rest_shape(stitches: StitchMesh, shape: Option<Arc<RestShape>>) -> Self {
+        Self::laid(stitches, shape, Arc::default())
+    }
+
+    /// Stitches with loops of these shapes, if any, and woven pieces, their yarn just laid.
+    pub fn laid(stitches: StitchMesh, shape: Option<Arc<RestShape>>, woven: Arc<Vec<Woven>>) -> Self {
         let net = lay(&stitches);
-        Self::of(stitches, net, shape)
+        Self::of(stitches, net, shape, woven)
     }
 
     /// The fabric after its stitches have been edited, its yarn laid again where it has to be.
     pub fn edited(&self, stitches: StitchMesh) -> Self {
         match &self.rest_shape {
-            None if self.surgery == Surgery::default() => {
+            None if self.surgery == Surgery::default() && self.woven.is_empty() => {
                 let net = relay(&self.net, &self.stitches, &stitches);
-                Self::of(stitches, net, None)
+                Self::of(stitches, net, None, self.woven.clone())
             }
-            shape => Self::with_rest_shape(stitches, shape.clone()),
+            shape => Self::laid(stitches, shape.clone(), self.woven.clone()),
         }
     }
 
-    fn of(stitches: StitchMesh, mut net: YarnNet, rest_shape: Option<Arc<RestShape>>) -> Self {
-        let start = match &rest_shape {
+    /// `net` is that of the stitches alone.
+    fn of(
+        stitches: StitchMesh,
+        mut net: YarnNet,
+        rest_shape: Option<Arc<RestShape>>,
+        woven: Arc<Vec<Woven>>,
+    ) -> Self {
+        let mut start = match &rest_shape {
             Some(shape) => shape.apply(&stitches, &mut net),
             None => net.laid_state(),
         };
+        for piece in woven.iter() {
+            let yarn = piece.lay();
+            start.append(yarn.laid_state());
+            net.append(yarn);
+        }
         let (stitches, net, start) = (Arc::new(stitches), Arc::new(net), Arc::new(start));
-        Self { stitches, net, rest_shape, surgery: Surgery::default(), start, state: None, facts: None }
+        let surgery = Surgery::default();
+        Self { stitches, woven, net, rest_shape, surgery, start, state: None, facts: None }
+    }
+
+    /// The fabric with one more woven piece; all other yarn stays where it is. Nothing may have been cut: surgery is kept by
+    /// the numbers of the yarn as it was laid.
+    pub fn with_woven(&self, piece: Woven) -> Self {
+        let yarn = piece.lay();
+        let longer = |state: &Arc<YarnState>| {
+            let mut state = (**state).clone();
+            state.append(yarn.laid_state());
+            Arc::new(state)
+        };
+        let (start, state) = (longer(&self.start), self.state.as_ref().map(longer));
+        let mut net = (*self.net).clone();
+        net.append(yarn);
+        let woven = Arc::new(self.woven.iter().cloned().chain([piece]).collect());
+        Self { woven, net: Arc::new(net), start, state, facts: None, ..self.clone() }
     }
 
     /// Where the yarn is: the simulated state, or where it begins.
@@ -69,7 +104,7 @@ impl Fabric {
         if self.surgery == Surgery::default() {
             return Self { state: None, facts: None, ..self.clone() };
         }
-        Self::with_rest_shape((*self.stitches).clone(), self.rest_shape.clone())
+        Self::laid((*self.stitches).clone(), self.rest_shape.clone(), self.woven.clone())
     }
 
     /// The fabric after `surgery` has been done to it as it was laid.

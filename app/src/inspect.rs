@@ -9,6 +9,7 @@ use serde::Serialize;
 use sim_core::{Facts, HoldFact};
 use std::collections::BTreeMap;
 use stitch_mesh::ids::{FaceId, VisitId};
+use stitch_mesh::weave::Woven;
 
 /// How many pieces of yarn there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -17,6 +18,19 @@ pub struct YarnCount {
     pub open: usize,
     /// Rings.
     pub closed: usize,
+}
+
+/// A woven piece.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WovenFacts {
+    /// Yarns of the warp.
+    pub ends: usize,
+    /// Yarns of the weft.
+    pub picks: usize,
+    /// Ends and picks of the repeat of the weave.
+    pub repeat: [usize; 2],
+    /// Distance from a yarn to the next [mm].
+    pub spacing_mm: f64,
 }
 
 /// Facts about a project. Before there are stitches, those of the input mesh.
@@ -44,6 +58,9 @@ pub struct Inspection {
     pub mean_course_spacing_mm: f64,
     /// Mean distance from a stitch to the next in its row [mm].
     pub mean_wale_spacing_mm: f64,
+    /// Woven pieces.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub woven: Vec<WovenFacts>,
     /// Unstretched length of all yarn [m].
     pub yarn_length_m: f64,
     /// Extent in x, y, z [mm].
@@ -81,7 +98,7 @@ pub fn inspect(project: &Project) -> Inspection {
 }
 
 fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
-    let Fabric { stitches, net, .. } = fabric;
+    let Fabric { stitches, woven, net, .. } = fabric;
     let state = fabric.state();
     facts.rows = stitches.rows().len();
     facts.loops = stitches.loop_count();
@@ -119,8 +136,16 @@ fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
     facts.size_mm = ((high - low) * 1e3).to_array();
+    facts.woven = woven.iter().map(WovenFacts::of).collect();
     facts.sim = fabric.facts.clone();
     facts
+}
+
+impl WovenFacts {
+    fn of(piece: &Woven) -> Self {
+        let Woven { ends, picks, spacing, ref draft, .. } = *piece;
+        Self { ends, picks, repeat: draft.repeat(), spacing_mm: 1e3 * spacing }
+    }
 }
 
 impl Inspection {
@@ -146,13 +171,26 @@ impl Inspection {
 
 impl std::fmt::Display for Inspection {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        writeln!(f, "{} faces in {} rows, {} boundary edges", self.faces, self.rows, self.boundary_edges)?;
+        if self.faces > 0 {
+            let Self { faces, rows, boundary_edges, .. } = self;
+            writeln!(f, "{faces} faces in {rows} rows, {boundary_edges} boundary edges")?;
+        }
         if self.loops > 0 {
             let stitches: Vec<String> = self.stitches.iter().map(|(s, n)| format!("{n} {s}")).collect();
             writeln!(f, "{} loops: {}", self.loops, stitches.join(", "))?;
+        }
+        for WovenFacts { ends, picks, repeat: [wide, high], spacing_mm } in &self.woven {
+            writeln!(
+                f,
+                "woven: {ends} ends by {picks} picks, {spacing_mm:.2} mm apart, repeat {wide} by {high}"
+            )?;
+        }
+        if self.dofs > 0 {
             writeln!(f, "{} contact nodes, {} degrees of freedom", self.contact_nodes, self.dofs)?;
             let YarnCount { open, closed } = self.yarns;
             writeln!(f, "{:.2} m of yarn: {open} with ends, {closed} closed", self.yarn_length_m)?;
+        }
+        if self.loops > 0 {
             let (course, wale) = (self.mean_course_spacing_mm, self.mean_wale_spacing_mm);
             writeln!(f, "rows {course:.2} mm apart, stitches {wale:.2} mm")?;
         }

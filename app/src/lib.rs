@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `project` | what a project is, and its file |
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
+//! | `cloth` | woven cloth as a project of its own |
 //! | `relax` | relaxing the stitch mesh of a project, and how even it is |
 //! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet`, `charts` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program, the contact sheet of stitches, knitting charts |
 //! | `lab` | virtual textile experiments |
@@ -14,6 +15,7 @@
 pub mod bundled;
 pub mod charts;
 pub mod cli;
+pub mod cloth;
 pub mod command;
 pub mod document;
 pub mod drawing;

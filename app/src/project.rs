@@ -24,6 +24,7 @@ use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::obj::{Unit, read_obj};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::{Place, StitchMesh};
+use stitch_mesh::weave::Woven;
 use stitch_mesh::yarn_net::YarnState;
 
 /// Version of the file that this program writes, and the newest that it reads.
@@ -74,6 +75,15 @@ impl Project {
     /// The fabric, or an error that says what to do first.
     pub fn fabric(&self) -> Result<&Fabric> {
         self.fabric.as_ref().context("the mesh has no stitches yet: label all its rows, then tessellate it")
+    }
+
+    /// The fabric if it has stitches, or an error that says so.
+    pub fn knitted(&self) -> Result<&Fabric> {
+        let fabric = self.fabric()?;
+        if fabric.stitches.stitches().is_empty() {
+            bail!("the project has woven cloth only, and no stitches");
+        }
+        Ok(fabric)
     }
 
     /// Takes over where the yarn is in another project, as far as both have the same faces. `was` tells for each face here
@@ -177,6 +187,9 @@ struct FileFabric {
     /// Absent where nothing was cut and nothing has slipped out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     surgery: Option<Surgery>,
+    /// Absent where nothing is woven.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    woven: Vec<Woven>,
     state: Option<YarnState>,
     facts: Option<Facts>,
 }
@@ -199,20 +212,26 @@ impl FileFabric {
             marks: Some(marks).filter(|m| **m != Marks::default()).cloned(),
             rest_shape: fabric.rest_shape.as_deref().cloned(),
             surgery: Some(&fabric.surgery).filter(|s| **s != Surgery::default()).cloned(),
+            woven: (*fabric.woven).clone(),
             state: fabric.state.as_deref().cloned(),
             facts: fabric.facts.clone(),
         }
     }
 
     fn into_fabric(self) -> Result<Fabric> {
-        let mesh = PolygonMesh::new(self.mesh.positions, &self.mesh.faces).context("the stitch mesh")?;
-        let faces = mesh.face_count();
-        let stitches = StitchMesh::new(mesh, self.stitches)?.with(
-            self.dyes.unwrap_or_else(|| vec![Dye::UNDYED; faces]),
-            self.places.unwrap_or_else(|| vec![None; faces]),
-            self.marks.unwrap_or_default(),
-        )?;
-        let mut fabric = Fabric::with_rest_shape(stitches, self.rest_shape.map(Arc::new))
+        let stitches = if self.mesh.faces.is_empty() && !self.woven.is_empty() {
+            StitchMesh::empty()
+        } else {
+            let mesh = PolygonMesh::new(self.mesh.positions, &self.mesh.faces).context("the stitch mesh")?;
+            let faces = mesh.face_count();
+            StitchMesh::new(mesh, self.stitches)?.with(
+                self.dyes.unwrap_or_else(|| vec![Dye::UNDYED; faces]),
+                self.places.unwrap_or_else(|| vec![None; faces]),
+                self.marks.unwrap_or_default(),
+            )?
+        };
+        self.woven.iter().try_for_each(Woven::check).context("woven cloth")?;
+        let mut fabric = Fabric::laid(stitches, self.rest_shape.map(Arc::new), Arc::new(self.woven))
             .after(self.surgery.unwrap_or_default())?;
         if let Some(state) = self.state {
             if !state.fits(&fabric.net) || !state.is_finite() {

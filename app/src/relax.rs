@@ -1,7 +1,6 @@
 //! Relaxing the stitch mesh of a project: its stitches move on the smooth surface of the input until they are as even as they
 //! can be, and the yarn is laid again.
 
-use crate::fabric::Fabric;
 use crate::project::Project;
 use anyhow::{Result, bail};
 use serde::Serialize;
@@ -29,7 +28,8 @@ pub fn relax_mesh(
     surface: bool,
     watch: Watch<'_>,
 ) -> Result<Project> {
-    let before = &project.fabric()?.stitches;
+    let knitted = project.knitted()?;
+    let before = &knitted.stitches;
     let input = surface.then(|| project.labelled.mesh());
     let mut relaxation = MeshRelaxation::new(before, input, params)?;
     if relaxation.run(watch) == RelaxEnd::Interrupted {
@@ -42,7 +42,7 @@ pub fn relax_mesh(
         after.materials = project.materials.refitted(mean_width(&stitches));
     }
     after.scene.let_go(); // pins and clamps hold nodes where these are no more
-    after.fabric = Some(Fabric::new(stitches));
+    after.fabric = Some(knitted.edited(stitches));
     Ok(after)
 }
 

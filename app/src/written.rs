@@ -126,7 +126,7 @@ pub fn tiled(
     faces: Option<&[u32]>,
     layout: Layout,
 ) -> Result<Tiled> {
-    let stitches = &project.fabric()?.stitches;
+    let stitches = &project.knitted()?.stitches;
     let all = stitches.rows();
     let region = region(&all, rows, faces)?;
     Ok(tile(stitches, &all, &region, &Pattern::read(text)?, layout)?)
@@ -137,7 +137,7 @@ pub fn tiled(
 /// # Errors
 /// Which stitch cannot be knitted by hand, and why.
 pub fn told(project: &Project, rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Result<String> {
-    let stitches = &project.fabric()?.stitches;
+    let stitches = &project.knitted()?.stitches;
     let all = stitches.rows();
     let region = region(&all, rows, faces)?;
     let part = |row: &Row| -> Option<Result<Row>> {

@@ -18,6 +18,7 @@ use crate::mass::mass;
 use crate::material::Material;
 use crate::model::{BendTerm, FROZEN, Model, SegmentTerm, Stencil, WrapTerm};
 use crate::solver::matrix::BlockMatrix;
+use crate::woven::ShearTerm;
 use glam::DVec3;
 use rayon::prelude::*;
 use stitch_mesh::ids::VisitId;
@@ -96,6 +97,7 @@ pub(crate) struct System {
     segments: Vec<Places<2>>,
     bends: Vec<Places<3>>,
     wraps: Vec<Places<4>>,
+    shears: Vec<Places<4>>,
 }
 
 impl System {
@@ -106,6 +108,7 @@ impl System {
             segments: model.segments.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
             bends: model.bends.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
             wraps: model.wraps.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
+            shears: model.shears.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
             rhs: vec![0.0; model.dof_count()],
             pull: vec![DVec3::ZERO; model.sliding.len()],
             matrix,
@@ -122,6 +125,7 @@ impl System {
         sum.add(&model.segments, &self.segments, |term| segment(term, start));
         sum.add(&model.bends, &self.bends, |term| bend(term, start));
         sum.add(&model.wraps, &self.wraps, |term| wrap(term, start));
+        sum.add(&model.shears, &self.shears, |term| shear(term, start));
     }
 }
 
@@ -258,17 +262,36 @@ fn wrap(term: &WrapTerm, Start { materials, state, step: h, .. }: Start) -> Cont
     }
 }
 
+fn shear(term: &ShearTerm, Start { materials, state, step: h, .. }: Start) -> Contribution<4, 12> {
+    let shear = term.shear(materials);
+    let sheared = shear.expand(&term.stencil.points(state));
+    let damped =
+        h * (h + 0.5 * term.dyes.map(|d| materials[d as usize].stiffness_damping).iter().sum::<f64>());
+    let [front, behind] = term.press(materials, state);
+    Contribution {
+        matrix: sheared.hessian.map(|row| row.map(|k| damped * k)),
+        rhs: sheared.gradient.map(|g| -h * g),
+        pull: [DVec3::ZERO, front, behind, DVec3::ZERO],
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::materials::Materials;
     use crate::solver::gradients::Preconditioner;
     use std::sync::Arc;
-    use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube};
+    use stitch_mesh::dye::Dye;
+    use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube, weave::Woven};
 
-    /// A tube, so that the seam of closed yarns is in it, crumpled and with its yarn slid.
+    /// A tube, so that the seam of closed yarns is in it, and woven cloth, crumpled and with their yarn slid.
     fn crumpled() -> (Model, YarnState) {
-        let net = Arc::new(lay(&tube(5, 3, StitchSize::of_width(3e-3)).unwrap()));
+        let mut net = lay(&tube(5, 3, StitchSize::of_width(3e-3)).unwrap());
+        let (draft, middle) = ("twill".parse().unwrap(), DVec3::X);
+        let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(Dye);
+        let cloth = Woven { draft, ends: 5, picks: 4, spacing: 2e-3, warp, weft, middle, flat: false };
+        net.append(cloth.lay());
+        let net = Arc::new(net);
         let mut state = net.laid_state();
         let mut hash = (0..).map(|i| crate::noise::unit_hash(i) - 0.5);
         let mut noise = |size: f64| size * hash.next().unwrap();

@@ -4,6 +4,7 @@ use crate::local::Element;
 use crate::mass::mass;
 use crate::materials::Materials;
 use crate::model::{BendTerm, Model, SegmentTerm, WrapTerm};
+use crate::woven::ShearTerm;
 use serde::{Deserialize, Serialize};
 use stitch_mesh::yarn_net::YarnState;
 
@@ -16,6 +17,8 @@ pub struct Energies {
     pub bend: f64,
     /// Of stitch wrapping [J].
     pub wrap: f64,
+    /// Of shear between warp and weft [J].
+    pub shear: f64,
     /// Of contact lengths and of parallel contacts [J].
     pub spacing: f64,
     /// Of friction springs that have given way and not yet slipped [J]; zero where only a state is known, and no anchors.
@@ -27,7 +30,7 @@ pub struct Energies {
 impl Energies {
     /// Potential energy of the yarn itself [J].
     pub fn elastic(&self) -> f64 {
-        self.stretch + self.bend + self.wrap + self.spacing
+        self.stretch + self.bend + self.wrap + self.shear + self.spacing
     }
 }
 
@@ -44,10 +47,12 @@ impl Model {
         }
         let bend = |b: &BendTerm| b.bend(of(b.dye)).energy(&b.stencil.coordinates(state));
         let wrap = |w: &WrapTerm| w.wrap(of(w.dye)).energy(&w.stencil.points(state));
+        let shear = |s: &ShearTerm| s.shear(&yarns).energy(&s.stencil.points(state));
         Energies {
             stretch,
             bend: self.bends.iter().map(bend).sum(),
             wrap: self.wraps.iter().map(wrap).sum(),
+            shear: self.shears.iter().map(shear).sum(),
             spacing,
             sticking: 0.0,
             kinetic: self.kinetic_energy(materials, state),

@@ -3,7 +3,7 @@
 use crate::clearance::least_distance;
 use crate::curves::curves;
 use crate::materials::Materials;
-use crate::model::Model;
+use crate::model::{Model, SegmentTerm};
 use crate::scene::{Forces, Scene};
 use crate::step::clearances;
 use glam::DVec3;
@@ -60,11 +60,12 @@ pub(crate) fn measure(
     (scene, time_s): (&Scene, f64),
     state: &YarnState,
 ) -> Facts {
-    let strain = |q: [f64; 8]| {
+    let strain = |term: &SegmentTerm| {
+        let q: [f64; 8] = term.stencil.coordinates(state);
         let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
-        r.length() / (q[7] - q[3]) - 1.0
+        r.length().hypot(term.climb) / (q[7] - q[3]) - 1.0
     };
-    let strains = model.segments.iter().map(|s| strain(s.stencil.coordinates(state)));
+    let strains = model.segments.iter().map(strain);
     let depth = |(x, clearance): (&DVec3, f64)| {
         let gaps = scene.bodies.iter().map(|b| clearance - b.distance(b.pose(time_s).undo(*x)).0);
         gaps.fold(0.0, f64::max)

@@ -43,14 +43,17 @@ mod preset;
 mod rest_shape;
 mod rigid;
 mod scene;
+mod shear;
 mod simulator;
 mod solver;
+mod spacing;
 mod step;
 mod stretch;
 mod surgery;
 mod surroundings;
 mod take_in;
 mod thread;
+mod woven;
 mod wrap;
 
 pub use body::Body;

@@ -8,6 +8,7 @@
 //! | [`SegmentTerm`] | segment: mass, stretch, gravity, and contact length or parallel contact |
 //! | [`BendTerm`] | pair of consecutive segments |
 //! | [`WrapTerm`] | pair of opposite outer segments at a stitch contact, between its new yarn and each old one |
+//! | [`ShearTerm`] | angle between warp and weft at a crossing of woven cloth |
 //!
 //! Parallel old yarns of a decrease do not wrap around each other. At the end of a yarn, where an outer segment is
 //! missing, its quad is left out. Between them these elements join the inside of a plain knit with at most eleven node
@@ -19,13 +20,12 @@
 //! its net.
 
 use crate::bend::Bend;
-use crate::contact_length::ContactLength;
-use crate::local::Element;
 use crate::material::Material;
 use crate::materials::Materials;
-use crate::parallel::Parallel;
+use crate::spacing::Spacing;
 use crate::stretch::Stretch;
 use crate::surgery::slip;
+use crate::woven::{ShearTerm, climb, shears};
 use crate::wrap::Wrap;
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
@@ -75,7 +75,7 @@ pub(crate) struct Stencil<const K: usize> {
 }
 
 impl<const K: usize> Stencil<K> {
-    fn new(net: &YarnNet, visits: [VisitId; K], turn: [f64; K]) -> Self {
+    pub fn new(net: &YarnNet, visits: [VisitId; K], turn: [f64; K]) -> Self {
         Self { visits, nodes: visits.map(|v| net.visits[v.index()].node), turn }
     }
 
@@ -121,6 +121,8 @@ pub(crate) struct SegmentTerm {
     pub dye: u32,
     /// Δu when laid [m].
     pub rest: f64,
+    /// c, how far it climbs over or under other yarn in woven cloth [m].
+    pub climb: f64,
     /// Whether it lies in a stitch contact.
     pub in_contact: bool,
     /// How close its ends may come along the yarn, over the parallel distance: half at nodes where yarns only cross, which
@@ -130,40 +132,15 @@ pub(crate) struct SegmentTerm {
 
 impl SegmentTerm {
     pub fn stretch(&self, material: &Material) -> Stretch {
-        Stretch { stiffness: material.stretch_stiffness() }
+        Stretch { stiffness: material.stretch_stiffness(), climb: self.climb }
     }
 
     /// The force on Δu alone: contact length inside of a stitch contact, parallel contact elsewhere.
     pub fn spacing(&self, material: &Material) -> Spacing {
         if self.in_contact {
-            let stiffness = material.length_factor * material.stretch_stiffness();
-            Spacing::Contact(ContactLength { stiffness, rest: self.rest })
+            Spacing::contact(material, self.rest)
         } else {
-            let distance = self.closeness * material.parallel_distance.min(self.rest);
-            Spacing::Free(Parallel { stiffness: material.parallel_stiffness, distance })
-        }
-    }
-}
-
-/// What keeps the two ends of a segment apart along the yarn.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Spacing {
-    Contact(ContactLength),
-    Free(Parallel),
-}
-
-impl Element<2> for Spacing {
-    fn energy(&self, q: &[f64; 2]) -> f64 {
-        match self {
-            Self::Contact(element) => element.energy(q),
-            Self::Free(element) => element.energy(q),
-        }
-    }
-
-    fn expand(&self, q: &[f64; 2]) -> crate::local::Local<2> {
-        match self {
-            Self::Contact(element) => element.expand(q),
-            Self::Free(element) => element.expand(q),
+            Spacing::free(material, self.closeness, self.rest)
         }
     }
 }
@@ -217,6 +194,7 @@ pub struct Model {
     pub(crate) segments: Vec<SegmentTerm>,
     pub(crate) bends: Vec<BendTerm>,
     pub(crate) wraps: Vec<WrapTerm>,
+    pub(crate) shears: Vec<ShearTerm>,
     /// First unknown of each node, and the number of unknowns at the end, [node_count + 1].
     pub(crate) start: Vec<u32>,
     /// Unknown of each sliding coordinate, or [`FROZEN`], [visit_count].
@@ -233,6 +211,7 @@ impl Model {
         let segments = segments(&net, &dye_of)?;
         let bends = bends(&net, &segments);
         let wraps = wraps(&net, &segments);
+        let shears = shears(&net, &dye_of);
         let (start, sliding) = layout(&net);
         let mut neighbours: Vec<Vec<u32>> = (0..net.nodes.len() as u32).map(|n| vec![n]).collect();
         let mut join = |nodes: &[NodeId]| {
@@ -243,11 +222,12 @@ impl Model {
         segments.iter().for_each(|s| join(&s.stencil.nodes));
         bends.iter().for_each(|b| join(&b.stencil.nodes));
         wraps.iter().for_each(|w| join(&w.stencil.nodes));
+        shears.iter().for_each(|s| join(&s.stencil.nodes));
         for row in &mut neighbours {
             row.sort_unstable();
             row.dedup();
         }
-        Ok(Self { net, dyes, dye_of, segments, bends, wraps, start, sliding, neighbours })
+        Ok(Self { net, dyes, dye_of, segments, bends, wraps, shears, start, sliding, neighbours })
     }
 
     /// Lets the bends that are `new` to the yarn start in `state` without jamming, however sharp they are: it has not been
@@ -356,7 +336,8 @@ fn segments(net: &YarnNet, dye_of: &[u32]) -> Result<Vec<SegmentTerm>, NetError>
             1.0
         };
         let dye = dye_of[a.index()];
-        terms.push(SegmentTerm { stencil, dye, rest, in_contact: false, closeness });
+        let climb = climb(net, segment.ends, rest);
+        terms.push(SegmentTerm { stencil, dye, rest, climb, in_contact: false, closeness });
     }
     let by_ends: HashMap<[VisitId; 2], usize> =
         terms.iter().enumerate().map(|(i, t)| (t.stencil.visits, i)).collect();

@@ -8,6 +8,10 @@
 //! - Hessian in (d, Δu), exact and of rank one: k_s/Δu (d, −|w|)(d, −|w|)ᵀ; across d, k_s (1/Δu − 1/l) (I − d dᵀ), which
 //!   is negative in a compressed segment and then left out.
 //!
+//! **Crimp.** Yarn that climbs by c across the fabric on its way from x₀ to x₁, over or under another, is l = √(|r|² + c²)
+//! long (see `woven.rs`); c = 0 for all others. Then ∇l = r/l takes the place of d, and across it the stiffness is
+//! k_s (1/Δu − 1/l) (I − ∇l ∇lᵀ).
+//!
 //! # Differences from the paper
 //! The paper differentiates in full. Leaving out compression across d is what keeps the matrix definite: a slack yarn
 //! would buckle sideways, which the bending stiffness resists anyway.
@@ -20,13 +24,15 @@ use glam::DVec3;
 pub(crate) struct Stretch {
     /// k_s = YπR² [N].
     pub stiffness: f64,
+    /// c [m].
+    pub climb: f64,
 }
 
 impl Stretch {
     /// (r, l, Δu).
-    fn measure(q: &[f64; 8]) -> (DVec3, f64, f64) {
+    fn measure(&self, q: &[f64; 8]) -> (DVec3, f64, f64) {
         let r = point(q, 4) - point(q, 0);
-        (r, r.length().max(LEAST_LENGTH), (q[7] - q[3]).max(LEAST_LENGTH))
+        (r, r.length().hypot(self.climb).max(LEAST_LENGTH), (q[7] - q[3]).max(LEAST_LENGTH))
     }
 
     /// k_s (1/Δu − 1/l)₊: stiffness of a taut segment across its own direction [N/m].
@@ -37,12 +43,12 @@ impl Stretch {
 
 impl Element<8> for Stretch {
     fn energy(&self, q: &[f64; 8]) -> f64 {
-        let (_, l, du) = Self::measure(q);
+        let (_, l, du) = self.measure(q);
         0.5 * self.stiffness * (l - du).powi(2) / du
     }
 
     fn expand(&self, q: &[f64; 8]) -> Local<8> {
-        let (r, l, du) = Self::measure(q);
+        let (r, l, du) = self.measure(q);
         let d = r / l;
         let w = l / du;
         let mut local = Local::zero();
@@ -76,9 +82,9 @@ impl Element<8> for Stretch {
         local
     }
 
-    // A rotation moves the second end against the first by ω × r, which is all across d.
+    // A rotation moves the second end against the first by ω × r, which is all across r and ∇l.
     fn spin(&self, q: &[f64; 8], omega: DVec3) -> [f64; 8] {
-        let (r, l, du) = Self::measure(q);
+        let (r, l, du) = self.measure(q);
         let force = self.across(l, du) * omega.cross(r);
         let mut out = [0.0; 8];
         put(&mut out, 0, -force);
@@ -92,7 +98,7 @@ mod tests {
     use super::*;
     use crate::testing::finite_difference::{check_element, check_exact_hessian, samples};
 
-    const STRETCH: Stretch = Stretch { stiffness: 17.7 };
+    const STRETCH: Stretch = Stretch { stiffness: 17.7, climb: 0.0 };
 
     /// Segments of 0.01 mm to 0.1 m, compressed or stretched.
     fn cases(ratio: std::ops::Range<f64>) -> impl Iterator<Item = [f64; 8]> {
@@ -116,6 +122,24 @@ mod tests {
     fn hessian_is_exact_when_taut() {
         for q in cases(1.01..1.8) {
             check_exact_hessian(&STRETCH, &q);
+        }
+    }
+
+    #[test]
+    fn derivatives_of_crimped_yarn() {
+        for (q, steep) in cases(0.5..1.8).zip([0.2, 1.0, 3.0].into_iter().cycle()) {
+            let climb = steep * point(&q, 4).distance(point(&q, 0));
+            let crimped = Stretch { climb, ..STRETCH };
+            check_element(&crimped, &q);
+            let mut taut = q;
+            taut[7] = q[3] + crimped.measure(&q).1 / 1.3;
+            check_exact_hessian(&crimped, &taut);
+            crate::testing::finite_difference::check_spin(
+                &crimped,
+                &taut,
+                DVec3::new(0.3, -2.0, 1.1),
+                [0, 4],
+            );
         }
     }
 

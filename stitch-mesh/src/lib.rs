@@ -33,5 +33,6 @@ pub mod swatches;
 pub mod tessellate;
 pub mod unravel;
 pub mod validate;
+pub mod weave;
 pub mod yarn_curves;
 pub mod yarn_net;

@@ -6,6 +6,7 @@
 
 use crate::corners::Corners;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
+pub use crate::validate::MeshError;
 use crate::validate::{MeshProblem, area_vector, position_problems, validate};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -35,19 +36,6 @@ pub struct PolygonMesh {
     corners: Corners,
 }
 
-/// A mesh that cannot be built, and why.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}", describe(.0))]
-pub struct MeshError(pub Vec<MeshProblem>);
-
-fn describe(problems: &[MeshProblem]) -> String {
-    let shown: Vec<String> = problems.iter().take(3).map(|p| p.to_string()).collect();
-    match problems.len() - shown.len() {
-        0 => shown.join("; "),
-        more => format!("{}; and {more} more", shown.join("; ")),
-    }
-}
-
 impl PolygonMesh {
     /// Builds the mesh from vertex positions [m] and faces (vertex indices, counter-clockwise seen from the front).
     ///
@@ -58,6 +46,16 @@ impl PolygonMesh {
         if !problems.is_empty() {
             return Err(MeshError(problems));
         }
+        Ok(Self::build(positions, faces))
+    }
+
+    /// The mesh without faces, where nothing is knitted.
+    pub(crate) fn empty() -> Self {
+        Self::build(Vec::new(), &[])
+    }
+
+    /// Builds the mesh of faces in which nothing is wrong.
+    fn build(positions: Vec<DVec3>, faces: &[Vec<u32>]) -> Self {
         let corners = Corners::new(positions.len(), faces);
         let count = faces.iter().map(Vec::len).sum();
         let mut half_edges: Vec<HalfEdge> = Vec::with_capacity(count);
@@ -85,7 +83,7 @@ impl PolygonMesh {
             }
             face_starts.push(half_edges.len() as u32);
         }
-        Ok(Self { positions, half_edges, edges, face_starts, border_from, corners })
+        Self { positions, half_edges, edges, face_starts, border_from, corners }
     }
 
     /// The same mesh with its vertices at other positions [m]. All ids survive.

@@ -131,6 +131,17 @@ impl StitchMesh {
         Ok(stitch_mesh)
     }
 
+    /// No stitches at all: what a project of woven cloth has.
+    pub fn empty() -> Self {
+        Self {
+            mesh: Arc::new(PolygonMesh::empty()),
+            stitches: Vec::new(),
+            dyes: Vec::new(),
+            places: Vec::new(),
+            marks: Marks::default(),
+        }
+    }
+
     /// Fit of a stitch in its face: as many edges, old loops to be pulled through, and nothing dropped.
     fn check_fit(&self, face: FaceId, stitch: &Stitch) -> Result<(), StitchMeshError> {
         let edges = self.mesh.face_half_edges(face).len() - 2;

@@ -71,6 +71,19 @@ pub enum MeshProblem {
     IsolatedVertex(VertexId),
 }
 
+/// A mesh that cannot be built, and why.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", describe(.0))]
+pub struct MeshError(pub Vec<MeshProblem>);
+
+fn describe(problems: &[MeshProblem]) -> String {
+    let shown: Vec<String> = problems.iter().take(3).map(|p| p.to_string()).collect();
+    match problems.len() - shown.len() {
+        0 => shown.join("; "),
+        more => format!("{}; and {more} more", shown.join("; ")),
+    }
+}
+
 /// Everything wrong with a mesh given as positions [m] and faces. Empty when [`crate::mesh::PolygonMesh::new`] succeeds.
 pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     let mut problems = Vec::new();

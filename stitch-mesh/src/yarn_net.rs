@@ -12,7 +12,7 @@
 //! | visits | node |
 //! |---|---|
 //! | 1 | a tail or a turn; its sliding coordinate is frozen (the node moves with its yarn) |
-//! | 2 | a plain contact, or two yarns crossing |
+//! | 2 | a plain contact, or two yarns crossing, as warp and weft do |
 //! | n + 1 | a decrease: n stacked loops and the yarn that goes through them |
 //!
 //! A net knows nothing of stitch symbols. It lives from the laying of the yarn to the next edit of the stitch mesh.
@@ -33,6 +33,8 @@ pub enum NodeKind {
     Thread,
     /// Yarns that cross and hold nothing: a cable, a slipped loop, the legs of a twisted one.
     Crossing,
+    /// Warp and weft that cross in woven cloth.
+    Woven,
     /// One yarn alone: a tail, a turn, a live loop.
     Free,
     /// One yarn alone since another one has been cut or has slipped out, or the end of a cut.
@@ -174,6 +176,31 @@ impl YarnNet {
         self.nodes[self.visits[visit.index()].node.index()].visits.len() == 1
     }
 
+    /// Adds the yarns of another net behind those of this one, as they are: each keeps to itself.
+    pub fn append(&mut self, other: Self) {
+        let [nodes, visits, yarns] =
+            [self.nodes.len(), self.visits.len(), self.yarns.len()].map(|n| n as u32);
+        let moved = |v: VisitId| VisitId(v.0 + visits);
+        let range = |r: Range<u32>| r.start + visits..r.end + visits;
+        self.nodes.extend(other.nodes.into_iter().map(|mut node| {
+            node.visits.iter_mut().for_each(|v| *v = moved(*v));
+            node
+        }));
+        Arc::make_mut(&mut self.visits).extend(other.visits.iter().map(|v| Visit {
+            node: NodeId(v.node.0 + nodes),
+            yarn: YarnId(v.yarn.0 + yarns),
+            ..*v
+        }));
+        self.yarns.extend(other.yarns.into_iter().map(|y| Yarn { visits: range(y.visits), ..y }));
+        self.contacts.extend(other.contacts.into_iter().map(|mut c| {
+            c.new.iter_mut().chain(c.old.iter_mut().flatten()).for_each(|v| *v = moved(*v));
+            c
+        }));
+        self.loops.extend(other.loops.into_iter().map(|l| Loop { head: range(l.head), ..l }));
+        let taken_in = other.taken_in.into_iter();
+        self.taken_in.extend(taken_in.map(|t| TakenIn { segment: moved(t.segment), ..t }));
+    }
+
     /// The state in which the yarn was laid: at rest, nothing slid.
     pub fn laid_state(&self) -> YarnState {
         YarnState {
@@ -203,6 +230,14 @@ pub struct YarnState {
 }
 
 impl YarnState {
+    /// Adds the state of a net that is appended to the one that this is a state of.
+    pub fn append(&mut self, other: Self) {
+        self.position.extend(other.position);
+        self.velocity.extend(other.velocity);
+        self.sliding.extend(other.sliding);
+        self.sliding_velocity.extend(other.sliding_velocity);
+    }
+
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
         self.position.iter().chain(&self.velocity).all(|v| v.is_finite())

@@ -12,7 +12,7 @@ use std::path::Path;
 pub fn run(project: &Path, output: &Path, rows: Option<[usize; 2]>, print: Output) -> Result<()> {
     let name = project.display().to_string();
     let project = Project::open(project)?;
-    let stitches = &project.fabric().context(name.clone())?.stitches;
+    let stitches = &project.knitted().context(name.clone())?.stitches;
     let mut courses = Course::piece(stitches, &stitches.rows());
     if let Some([first, last]) = rows {
         if last >= courses.len() {

@@ -5,19 +5,19 @@ mod chart;
 mod demo;
 mod interrupt;
 mod lab;
+mod new;
 mod simulate;
 mod values;
+mod weave;
 mod written;
 
-use crate::command::{Command, read_script};
-use crate::document::Document;
 use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
 use crate::lab::Experiment;
 use crate::open::open_any;
 use crate::project::{DEFAULT_STITCH_WIDTH, Project};
 use crate::{export, files, library, sheet};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
 use render::{Camera, Gpu, NamedView, render_image};
 use serde_json::json;
@@ -25,8 +25,6 @@ use sim_core::curves;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use stitch_mesh::edge_counts::StitchSize;
-use stitch_mesh::obj::Unit;
 use values::{RelaxStage, Solver, UnitName, parse_rows, parse_size};
 
 /// An editor for knitted fabric, with the yarn simulated live.
@@ -169,6 +167,17 @@ enum Verb {
         #[command(flatten)]
         print: Output,
     },
+    /// Weaves a piece of cloth
+    Weave {
+        /// A weave draft (a file: a line of # and . for each pick, the last pick first), or plain, twill, satin
+        draft: PathBuf,
+        #[arg(short)]
+        output: PathBuf,
+        #[command(flatten)]
+        piece: weave::Piece,
+        #[command(flatten)]
+        print: Output,
+    },
     /// Draws the contact sheet of all stitches and cables, front and back
     Stitches {
         #[arg(short, default_value = "out/stitches.png")]
@@ -269,15 +278,15 @@ fn run(arguments: Arguments) -> Result<()> {
     match verb {
         Verb::Demo { out, output } => demo::run(&out, output),
         Verb::New { mesh, output, stitch_size, unit, script, print } => {
-            let project = new(&mesh, unit.into(), stitch_size, script.as_deref())?;
+            let project = new::new(&mesh, unit.into(), stitch_size, script.as_deref())?;
             project.save(&output)?;
             report(&project, print)
         }
         Verb::Edit { project, script, output, print } => {
             let text = String::from_utf8(files::read(&script)?)
                 .with_context(|| format!("{} is not text", script.display()))?;
-            let project =
-                perform(Project::open(&project)?, &text).with_context(|| script.display().to_string())?;
+            let project = new::perform(Project::open(&project)?, &text)
+                .with_context(|| script.display().to_string())?;
             project.save(&output)?;
             report(&project, print)
         }
@@ -329,6 +338,7 @@ fn run(arguments: Arguments) -> Result<()> {
         Verb::Instructions { project, output, rows, faces, print } => {
             written::instructions(&project, rows, faces, output.as_deref(), print)
         }
+        Verb::Weave { draft, output, piece, print } => weave::weave(&draft, &piece, &output, print),
         Verb::Stitches { output } => {
             let bar = interrupt::step_counter("swatches")?;
             let sheet = sheet::draw(&Gpu::headless()?, &mut |done, _| bar.set_position(done as u64))?;
@@ -346,38 +356,6 @@ fn run(arguments: Arguments) -> Result<()> {
         Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
-}
-
-/// A project from a mesh: labelled, and tessellated where the labels allow it.
-fn new(mesh: &Path, unit: Unit, stitch_mm: f64, script: Option<&Path>) -> Result<Project> {
-    if !(0.1..=1000.0).contains(&stitch_mm) {
-        bail!("a stitch of {stitch_mm} mm cannot be knitted: --stitch-size goes from 0.1 to 1000");
-    }
-    let project = Project::from_obj(mesh, unit, StitchSize::of_width(stitch_mm * 1e-3))?;
-    let project = match script {
-        Some(script) => {
-            let text = String::from_utf8(files::read(script)?)
-                .with_context(|| format!("{} is not text", script.display()))?;
-            perform(project, &text).with_context(|| script.display().to_string())?
-        }
-        None => Command::Autolabel.apply(&project)?,
-    };
-    if project.fabric.is_some() {
-        return Ok(project);
-    }
-    match project.labelled.problems().len() {
-        0 => Command::Tessellate { width_mm: Some(stitch_mm) }.apply(&project),
-        _ => Ok(project), // the report says what could not be decided
-    }
-}
-
-/// Runs a script of commands.
-fn perform(project: Project, script: &str) -> Result<Project> {
-    let mut document = Document::new(project);
-    for (number, command) in read_script(script)? {
-        document.apply(command).with_context(|| format!("line {number}"))?;
-    }
-    Ok(document.project().clone())
 }
 
 /// Prints the facts of a project.

@@ -4,6 +4,7 @@
 //! Edges are named by their two vertices, faces by number, as the window and `inspect` show them, from 0: those of the input
 //! mesh for labels and counts, those of the stitch mesh for everything after tessellation.
 
+mod cloth;
 mod labels;
 mod name;
 mod pins;
@@ -15,6 +16,7 @@ mod surgery;
 mod tessellation;
 mod yarns;
 
+pub use cloth::Weave;
 pub(crate) use rest_shape::mean_size;
 pub use script::{read_script, write_script};
 
@@ -226,6 +228,8 @@ pub enum Command {
         /// Where to.
         to: Way,
     },
+    /// Weaves a piece of cloth and puts it beside what is there.
+    Weave(Weave),
     /// Changes the material of the yarn, or of yarn of one colour.
     SetMaterial {
         /// The colour, `#rrggbb`; all yarn that has no material of its own if absent.
@@ -357,6 +361,7 @@ impl Command {
             Self::ShiftWale { edge, end, to } => {
                 survivors = structure::shift_wale(project, *edge, *end, *to)?;
             }
+            Self::Weave(piece) => piece.perform(project)?,
             Self::SetMaterial { color, material } => yarns::set(project, *color, material.clone())?,
             Self::UsePreset { color, preset } => yarns::use_preset(project, *color, *preset)?,
             Self::ClearMaterial { color } => yarns::clear(project, *color)?,

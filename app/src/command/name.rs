@@ -64,6 +64,7 @@ impl Command {
             }
             Self::Import { text, .. } => format!("Knit {}", title(text)),
             Self::Tile { text, .. } => format!("Tile {}", title(text)),
+            Self::Weave(piece) => format!("Weave {} by {} yarns", piece.ends, piece.picks),
             Self::SplitCourse { .. } => "Split course edge".into(),
             Self::CollapseCourse { .. } => "Collapse course edge".into(),
             Self::AddWale { .. } => "Add wale edge".into(),

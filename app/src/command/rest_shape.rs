@@ -12,7 +12,8 @@ use stitch_mesh::stitch_mesh::StitchMesh;
 
 /// Lays the yarn with loops as they are in a relaxed sample of a pattern, or as drawn.
 pub(super) fn compensate(project: &mut Project, text: Option<&str>) -> Result<()> {
-    let stitches = (*project.fabric()?.stitches).clone();
+    let knitted = project.knitted()?;
+    let (stitches, woven) = ((*knitted.stitches).clone(), knitted.woven.clone());
     let shape = match text {
         None => None,
         Some(text) => {
@@ -20,7 +21,7 @@ pub(super) fn compensate(project: &mut Project, text: Option<&str>) -> Result<()
             Some(Arc::new(RestShape::relax(&sample, &project.materials, &mut |_| {})?))
         }
     };
-    project.fabric = Some(Fabric::with_rest_shape(stitches, shape));
+    project.fabric = Some(Fabric::laid(stitches, shape, woven));
     Ok(())
 }
 

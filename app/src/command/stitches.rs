@@ -20,7 +20,7 @@ pub(super) fn restitch(
     change: impl FnOnce(&mut StitchMesh) -> Result<()>,
 ) -> Result<()> {
     let before = project.clone();
-    let old = before.fabric()?;
+    let old = before.knitted()?;
     let mut stitches = (*old.stitches).clone();
     change(&mut stitches)?;
     let fabric = old.edited(stitches);

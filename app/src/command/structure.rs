@@ -1,7 +1,6 @@
 //! Commands that change the faces of the stitch mesh. What came through keeps its yarn where it is.
 
 use super::pins;
-use crate::fabric::Fabric;
 use crate::project::Project;
 use crate::written::{extent, swatch, tiled};
 use anyhow::Result;
@@ -16,9 +15,9 @@ fn reshape(
     edit: impl FnOnce(&StitchMesh) -> Result<Edited>,
 ) -> Result<Option<Survivors>> {
     let before = project.clone();
-    let from = before.fabric()?;
+    let from = before.knitted()?;
     let (stitches, survivors) = edit(&from.stitches)?;
-    let fabric = Fabric::with_rest_shape(stitches, from.rest_shape.clone());
+    let fabric = from.edited(stitches);
     let was = survivors.faces_before();
     let old_face = |f: FaceId| was.get(f.index()).copied().flatten();
     pins::keep(&mut project.scene, &from.net, &fabric.net, old_face);

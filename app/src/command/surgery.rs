@@ -23,7 +23,7 @@ fn each_loop(
     faces: &[u32],
     operation: impl Fn(Range<u32>) -> Operation,
 ) -> Result<()> {
-    let mut fabric = project.fabric()?.clone();
+    let mut fabric = project.knitted()?.clone();
     for &face in faces {
         let mesh = fabric.stitches.mesh();
         check_face(face, mesh.face_count())?;

@@ -37,7 +37,8 @@ pub(super) fn tessellate(project: &mut Project, width_mm: Option<f64>) -> Result
     project.size = size;
     project.counts = Some(counts);
     project.scene.let_go();
-    project.fabric = Some(Fabric::new(stitches));
+    let woven = project.fabric.as_ref().map(|f| f.woven.clone()).unwrap_or_default();
+    project.fabric = Some(Fabric::laid(stitches, None, woven));
     Ok(())
 }
 

@@ -20,7 +20,7 @@ pub(super) fn set(project: &mut Project, color: Option<Dye>, material: Material)
 }
 
 pub(super) fn use_preset(project: &mut Project, color: Option<Dye>, preset: Preset) -> Result<()> {
-    let width = project.fabric.as_ref().map_or(project.size.width, |f| mean_width(&f.stitches));
+    let width = project.knitted().map_or(project.size.width, |f| mean_width(&f.stitches));
     set(project, color, preset.material(width))
 }
 

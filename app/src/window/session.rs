@@ -284,7 +284,7 @@ impl Worker {
                 Ok(format!("Saved the history as {}", path.display()))
             }
             Request::SaveChart(path, courses) => {
-                charts::write(&self.document.project().fabric()?.stitches, &courses, &path)?;
+                charts::write(&self.document.project().knitted()?.stitches, &courses, &path)?;
                 Ok(format!("Saved the chart as {}", path.display()))
             }
         }
