@@ -2,9 +2,10 @@
 
 use crate::clearance::least_distance;
 use crate::curves::curves;
+use crate::forces::HoldFact;
 use crate::materials::Materials;
 use crate::model::{Model, SegmentTerm};
-use crate::scene::{Forces, Scene};
+use crate::scene::Scene;
 use crate::step::clearances;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -32,25 +33,6 @@ pub struct Facts {
     /// What holds the fabric, or touches it, and how hard.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub holds: Vec<HoldFact>,
-}
-
-/// The force of one thing in a scene on the fabric.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HoldFact {
-    /// What it is: the name of a clamp, "pins" for all of them, a body by kind and number.
-    pub what: String,
-    /// The force [N].
-    pub force_n: DVec3,
-}
-
-/// The forces in words.
-pub(crate) fn holds(scene: &Scene, forces: &Forces) -> Vec<HoldFact> {
-    let pins = (!scene.pins.is_empty()).then(|| ("pins".to_owned(), forces.pins.iter().sum::<DVec3>()));
-    let clamps = scene.clamps.iter().zip(&forces.clamps).map(|(c, f)| (c.name.clone(), *f));
-    let bodies = scene.bodies.iter().zip(&forces.bodies).enumerate();
-    let bodies = bodies.map(|(i, (b, f))| (format!("{} {i}", b.kind()), *f));
-    let all = pins.into_iter().chain(clamps).chain(bodies);
-    all.map(|(what, force_n)| HoldFact { what, force_n }).collect()
 }
 
 /// The figures that follow from a state; the others stay empty.

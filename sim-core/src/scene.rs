@@ -46,17 +46,6 @@ impl Clamp {
     }
 }
 
-/// What holds and touches the fabric, and with what force [N].
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Forces {
-    /// Of each pin on the fabric.
-    pub pins: Vec<DVec3>,
-    /// Of each clamp, all its springs together.
-    pub clamps: Vec<DVec3>,
-    /// Of each body, pressure and friction together, in the last step.
-    pub bodies: Vec<DVec3>,
-}
-
 /// Gravity, air, bodies, pins, clamps and the time step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -1,19 +1,18 @@
 //! The simulator: a net, its state, and time going by.
 
 use crate::energies::Energies;
-use crate::facts::{self, Facts, HoldFact};
+use crate::facts::{self, Facts};
 use crate::friction::Anchors;
 use crate::local::LEAST_LENGTH;
 use crate::material::MaterialError;
 use crate::materials::Materials;
 use crate::model::{Model, NetError};
 use crate::noise::unit_hash;
-use crate::scene::{Forces, Scene, SceneError};
+use crate::scene::{Scene, SceneError};
 use crate::solver::cholesky::SolveError;
 use crate::step::{Rejection, Stepper, Stuck};
 use crate::surgery::slip::slipped;
 use crate::surgery::{self, Operation, Surgery, SurgeryError};
-use crate::surroundings::clamp_force;
 use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -305,22 +304,9 @@ impl Simulator {
         self.scene_time = scene_time_s;
     }
 
-    /// The forces of pins, clamps and bodies on the fabric.
-    pub fn forces(&self) -> Forces {
-        let Scene { pins, clamps, bodies, .. } = &self.scene;
-        let state = self.state();
-        let mut by_bodies = self.stepper.body_forces.clone();
-        by_bodies.resize(bodies.len(), DVec3::ZERO); // before the first step, and where bodies came since
-        Forces {
-            pins: pins.iter().map(|p| p.force(state.position[p.node as usize])).collect(),
-            clamps: clamps.iter().map(|c| clamp_force(c, state, self.scene_time)).collect(),
-            bodies: by_bodies,
-        }
-    }
-
-    /// The same in words.
-    pub fn holds(&self) -> Vec<HoldFact> {
-        facts::holds(&self.scene, &self.forces())
+    /// Force of each body of the last step's scene on the fabric; none before the first step [N].
+    pub(crate) fn body_forces(&self) -> &[DVec3] {
+        &self.stepper.body_forces
     }
 
     /// Changes gravity, bodies, pins or time step; refused as a whole if anything in it makes no sense. What moves begins anew,

@@ -1,11 +1,10 @@
 //! What a scene does to the nodes of a fabric in one step: bodies, pins and clamps.
 //!
-//! Everything is taken where it is at the end of the step. Forces come back as they acted: those of the springs follow from
-//! where their nodes ended, those of bodies from the velocities that were solved for.
+//! Everything is taken where it is at the end of the step.
 
 use crate::body::Placed;
 use crate::body_contact::{BodyContact, Touching};
-use crate::scene::{Clamp, Scene};
+use crate::scene::Scene;
 use crate::step::Stepper;
 use glam::DVec3;
 use stitch_mesh::yarn_net::YarnState;
@@ -58,9 +57,4 @@ pub(crate) fn body_forces(scene: &Scene, touching: &[Touching], velocity: &[DVec
         forces[contact.body] += contact.force(velocity[contact.node], h);
     }
     forces
-}
-
-/// The force of a clamp on a fabric, all its springs together, at a time [s] [N].
-pub(crate) fn clamp_force(clamp: &Clamp, state: &YarnState, time_s: f64) -> DVec3 {
-    clamp.pins(time_s).map(|pin| pin.force(state.position[pin.node as usize])).sum()
 }

@@ -5,7 +5,7 @@
 //! Time goes no faster than on the clock, so that a small swatch falls as one would see it fall.
 
 use crate::curves::curves;
-use crate::facts::HoldFact;
+use crate::forces::HoldFact;
 use crate::materials::Materials;
 use crate::scene::Scene;
 use crate::simulator::{SimError, Simulator};

@@ -1,5 +1,12 @@
 //! Random swatches: stitches of all kinds, stacks, increases, twisted and slipped loops and cables beside and above each other.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "helpers of tests are tests, and clippy can't tell"
+)]
+
 mod common;
 
 use common::WIDTH;

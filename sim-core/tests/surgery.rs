@@ -1,5 +1,11 @@
 //! Yarn that is cut, pulled out and runs.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "helpers of tests are tests, and clippy can't tell"
+)]
+
 mod common;
 
 use common::{WIDTH, run, stockinette, swatch};
@@ -70,7 +76,8 @@ fn a_row_can_be_pulled_out_of_the_fabric() {
     let end = simulator.net().visits[end as usize].node;
     let at = simulator.state().position[end.index()];
     let outwards = DVec3::new(at.x.signum() * 0.2, 0.0, 0.0);
-    let border = |c: usize, r: usize| r != row && (c % (side - 1) == 0 || r % (side - 1) == 0);
+    let at_side = |i: usize| i.is_multiple_of(side - 1);
+    let border = |c: usize, r: usize| r != row && (at_side(c) || at_side(r));
     let mut held = pins(&simulator, side, border);
     held.push(Pin { node: end.0, target: at, stiffness: 5.0 });
     simulator.set_scene(Scene { pins: held, ..Scene::empty() }).unwrap();

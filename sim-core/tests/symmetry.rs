@@ -1,5 +1,11 @@
 //! What a fabric does not depend on: which way it is turned, and which hand knits it.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "helpers of tests are tests, and clippy can't tell"
+)]
+
 mod common;
 
 use common::{WIDTH, mean_position, run, stockinette, swatch};

@@ -6,7 +6,7 @@ use crate::files;
 use crate::inspect::inspect;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::weave::{WeaveDraft, Woven};
 
@@ -48,7 +48,7 @@ fn draft(name: &Path) -> Result<WeaveDraft> {
 }
 
 /// Weaves a piece of cloth as a project of its own.
-pub fn weave(name: &Path, piece: &Piece, output: &PathBuf, print: Output) -> Result<()> {
+pub fn weave(name: &Path, piece: &Piece, output: &Path, print: Output) -> Result<()> {
     let Piece { ends, picks, spacing, warp, weft, flat } = *piece;
     let middle = DVec3::ZERO;
     let draft = draft(name)?;

@@ -6,7 +6,7 @@ use crate::scenes;
 use anyhow::Result;
 use sim_core::Scene;
 use std::collections::HashMap;
-use stitch_mesh::ids::FaceId;
+use stitch_mesh::ids::{FaceId, NodeId};
 use stitch_mesh::yarn_net::YarnNet;
 
 /// Adds a clamp that holds some stitches where they are.
@@ -33,16 +33,17 @@ pub(super) fn keep(scene: &mut Scene, old: &YarnNet, new: &YarnNet, was: impl Fn
         }
         nodes
     };
-    let (old, mut now) = (by_face(old), HashMap::new());
+    let mut now = vec![None; old.nodes.len()];
+    let old = by_face(old);
     for (face, nodes) in by_face(new) {
         let before = match face {
             Some(face) => was(face).map(Some),
             None => Some(None),
         };
         let same = before.and_then(|f| old.get(&f)).filter(|o| o.len() == nodes.len());
-        now.extend(same.into_iter().flatten().copied().zip(nodes));
+        for (before, after) in same.into_iter().flatten().zip(nodes) {
+            now[*before as usize] = Some(NodeId(after));
+        }
     }
-    let renumbered = |node: &mut u32| now.get(node).map(|n| *node = *n).is_some();
-    scene.pins.retain_mut(|pin| renumbered(&mut pin.node));
-    scene.clamps.iter_mut().for_each(|clamp| clamp.nodes.retain_mut(|(node, _)| renumbered(node)));
+    scene.follow(&now);
 }
