@@ -27,6 +27,10 @@ const NOISE: f64 = 1e-6;
 /// Halvings of the time step before a simulation is given up; the last is a thousandth of the first.
 const MOST_HALVINGS: i32 = 10;
 
+/// Growth of the time step from step to step after it had to be halved. What made one fail lasts for a few: of a thousand random
+/// swatches 2.1 steps in a hundred were taken again with 2.
+const GROWTH: f64 = 1.4;
+
 /// Steps between two looks at the kinetic energy while settling.
 const SETTLE_INTERVAL: u64 = 10;
 
@@ -191,7 +195,7 @@ impl Simulator {
                     self.time += self.step;
                     self.scene_time += self.step;
                     self.steps += 1;
-                    self.step = self.scene.time_step.min(2.0 * self.step);
+                    self.step = self.scene.time_step.min(GROWTH * self.step);
                     while let Some(operation) = slipped(self.net(), self.state(), &self.materials) {
                         self.operate(operation)?;
                     }

@@ -15,9 +15,11 @@ use patterns::knitspeak::{Pattern, Width};
 use render::{Drawing, NamedView};
 use sim_core::{Body, Material, Materials, Scene, Simulator, curves};
 use std::sync::Arc;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::lay::lay;
 use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::weave::{FILL, Woven};
 use stitch_mesh::yarn_net::YarnNet;
 
 /// Names in the pattern library, and how often each is repeated across and upwards to come out at about the same size.
@@ -28,6 +30,8 @@ const KNITTED: [(&str, usize, usize); 5] = [
     ("Garter Stitch", 36, 24),
     ("2x2 Rib", 9, 24),
 ];
+/// Ends and picks of the plain weave.
+const WOVEN: usize = 46;
 /// Radius of the sphere [m] and its coefficient of friction.
 const RADIUS: f64 = 0.028;
 const FRICTION: f64 = 0.5;
@@ -77,7 +81,24 @@ fn fabrics() -> Result<Vec<Fabric>> {
         let net = Arc::new(lay(&knitted(name, across, high).context(name)?));
         Ok(Fabric { name, net, materials: Material::for_loop_width(LOOP).into() })
     };
-    KNITTED.into_iter().map(knitted).collect()
+    KNITTED.into_iter().map(knitted).chain([woven()]).collect()
+}
+
+/// Plain weave of the same yarn.
+fn woven() -> Result<Fabric> {
+    let material = Material::for_loop_width(LOOP);
+    let piece = Woven {
+        draft: "plain".parse()?,
+        ends: WOVEN,
+        picks: WOVEN,
+        spacing: material.drawn_radius / FILL,
+        warp: Dye::UNDYED,
+        weft: Dye::UNDYED,
+        middle: DVec3::ZERO,
+        flat: false,
+    };
+    piece.check()?;
+    Ok(Fabric { name: "Plain Weave", net: Arc::new(piece.lay()), materials: material.into() })
 }
 
 /// A fabric of the library.
