@@ -104,8 +104,10 @@ fn a_dropped_stitch_runs_when_the_fabric_is_stretched() {
     let (wide, high) = (9, 12);
     let net = stockinette(wide, high);
     let column = wide / 2;
+    // Two contacts a stitch: at least five ladders. When it starts to run is a matter of chance.
+    let ran = |s: &Simulator| s.net().contacts.len() + 10 <= net.contacts.len();
     let stretched = |dropped: bool| {
-        let mut simulator = slippery(&net, 0.02);
+        let mut simulator = slippery(&net, 0.01);
         let sides = pins(&simulator, wide, |c, _| c % (wide - 1) == 0);
         simulator.set_scene(Scene { pins: sides, ..Scene::empty() }).unwrap();
         run(&mut simulator, 0.1);
@@ -120,7 +122,7 @@ fn a_dropped_stitch_runs_when_the_fabric_is_stretched() {
             let (c, _) = place(net, pin.node as usize, wide).unwrap();
             DVec3::new(if c == 0 { -0.02 } else { 0.02 }, 0.0, 0.0)
         };
-        pull(&mut simulator, 1.0, apart, |_| false);
+        pull(&mut simulator, 1.5, apart, ran);
         println!(
             "{} contacts of {}, {:?}",
             simulator.net().contacts.len(),
@@ -131,7 +133,5 @@ fn a_dropped_stitch_runs_when_the_fabric_is_stretched() {
     };
     let whole = stretched(false);
     assert_eq!(whole.net().contacts.len(), net.contacts.len(), "a whole fabric does not run");
-    let ran = stretched(true);
-    // Two contacts a stitch: at least five ladders.
-    assert!(ran.net().contacts.len() + 10 <= net.contacts.len());
+    assert!(ran(&stretched(true)));
 }

@@ -28,6 +28,8 @@ const LOOP: f64 = 3e-3;
 /// How much wider the fabric is pulled, and how long that takes [s].
 const PULL: f64 = 0.2;
 const TIME: f64 = 0.2;
+/// Time step [s].
+const STEP: f64 = 0.01;
 /// Stiffness of what holds each node at the sides [N/m].
 const STIFFNESS: f64 = 10.0;
 
@@ -57,7 +59,7 @@ fn pull(print: Output) -> Result<()> {
         }
     };
     let clamps = vec![jaw(0, "left", -1.0), jaw(SIDE - 1, "right", 1.0)];
-    let scene = Scene { clamps, ..Scene::empty() };
+    let scene = Scene { clamps, time_step: STEP, ..Scene::empty() };
     let mut simulator = Simulator::new(&net, Material::for_loop_width(LOOP), scene, net.laid_state())?;
     let start = ProcessTime::now();
     while simulator.time_s() < TIME - 1e-9 {
@@ -72,6 +74,7 @@ fn pull(print: Output) -> Result<()> {
         "loops": loops,
         "solver": facts.solver,
         "steps": facts.steps,
+        "time_step_s": STEP,
         "cpu_s_per_stitch_and_sim_s": cost,
         "max_stretch_error": facts.max_stretch,
         "min_yarn_distance_over_diameter": facts.min_yarn_distance_over_diameter,
