@@ -1,4 +1,5 @@
-//! Six fabrics dropped on a sphere (Cirio et al., Fig. 12): of the same yarn and about the same size, and each falls its own way.
+//! Six fabrics dropped on a sphere (Cirio et al., Fig. 12): of the same yarn, the five knits about the same size and the plain weave
+//! somewhat smaller, and each falls its own way.
 //!
 //! What is measured: how far the fabric comes down, and how much of the level it still covers.
 
