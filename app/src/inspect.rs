@@ -111,8 +111,9 @@ fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
     for stitch in stitches.stitches() {
         *facts.stitches.entry(stitch.to_string()).or_default() += 1;
     }
+    let u = |visit: u32| net.visits[visit as usize].u;
     facts.yarn_length_m =
-        net.yarns.iter().map(|y| y.period.unwrap_or(net.visits[y.visits.end as usize - 1].u)).sum();
+        net.yarns.iter().map(|y| y.period.unwrap_or_else(|| u(y.visits.end - 1) - u(y.visits.start))).sum();
 
     let mut centers = vec![(DVec3::ZERO, 0.0); stitches.mesh().face_count()];
     for (node, position) in net.nodes.iter().zip(&state.position) {

@@ -3,6 +3,7 @@
 use crate::fabric::Fabric;
 use crate::project::Project;
 use serde::Serialize;
+use sim_core::Surgery;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::{FaceId, VisitId};
@@ -134,12 +135,13 @@ fn scattered(stitches: &StitchMesh, cable: &Cable) -> Option<Problem> {
 
 /// Loops that nothing holds.
 fn loose(fabric: &Fabric) -> impl Iterator<Item = Problem> {
+    let what = if fabric.surgery == Surgery::default() {
+        "nothing holds its loop, it would run: it is slipped row after row to where rows meet top to top; knit it once on the way"
+    } else {
+        "nothing holds its loop, it would run: yarn has been cut or dropped there; laying the yarn anew mends it"
+    };
     let loops = loose_loops(&fabric.stitches, &fabric.net);
-    loops.into_iter().map(|top| {
-        let what = "nothing holds its loop, it would run: it is slipped row after row to where rows meet top to top; knit it \
-                    once on the way";
-        Problem::at_face(Of::Stitches, fabric.stitches.mesh().face(top), what)
-    })
+    loops.into_iter().map(move |top| Problem::at_face(Of::Stitches, fabric.stitches.mesh().face(top), what))
 }
 
 /// Rings of yarn where a spiral was asked for.

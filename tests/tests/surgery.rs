@@ -21,6 +21,10 @@ fn a_script_cuts_and_the_file_keeps_it() {
     let cut = program.json(&["inspect", "b.purl"]);
     let open = |facts: &serde_json::Value| facts["yarns"]["open"].as_u64().unwrap();
     assert_eq!(open(&cut), open(&before) + 2);
+    let yarn = |facts: &serde_json::Value| facts["yarn_length_m"].as_f64().unwrap();
+    assert!((yarn(&cut) / yarn(&before) - 1.0).abs() < 0.01, "{} m, {} m", yarn(&cut), yarn(&before));
+    let problems = cut["problems"].to_string();
+    assert!(problems.contains("laying the yarn anew mends it"), "{problems}");
     program.json(&["simulate", "b.purl", "-o", "c.purl", "--scene", "free", "--seconds", "0.05"]);
     // What slips out while it is simulated is in the file too, or this state would not fit.
     let simulated = Project::open(&program.path("c.purl")).unwrap();

@@ -166,7 +166,8 @@ fn remapped(l: &Loop, new: &[Option<VisitId>]) -> Loop {
     let left: SmallVec<[u32; 8]> = l.head.clone().filter_map(|v| new[v as usize]).map(|v| v.0).collect();
     let head = match (left.iter().min(), left.iter().max()) {
         (Some(first), Some(last)) if (last - first) as usize + 1 == left.len() => *first..*last + 1,
-        // Gone, or cut in two: nothing holds what is left of it as a loop.
+        // Cut in two: no loop any more, but two ends.
+        (Some(_), Some(_)) => 0..0,
         _ => {
             let after = new.get(l.head.end as usize).copied().flatten().map_or(0, |v| v.0);
             after..after

@@ -58,6 +58,20 @@ fn a_cut_makes_two_yarns_of_an_open_one() {
 }
 
 #[test]
+fn a_loop_is_unheld_when_it_is_dropped_and_no_loop_when_it_is_cut() {
+    let net = swatch_model(5, 5).net;
+    let state = net.laid_state();
+    assert_eq!(slip::unheld(&net).count(), 0);
+    let held = net.loops.iter().find(|l| l.head.len() == 4).unwrap();
+    let cut = operate(&net, &state, &Operation::Cut(VisitId(held.head.start + 1))).unwrap();
+    assert_eq!(slip::unheld(&cut.net).count(), 0);
+    let dropped = Operation::Release(held.head.clone().map(VisitId).collect());
+    let dropped = operate(&net, &state, &dropped).unwrap();
+    let around: Vec<[VisitId; 2]> = slip::unheld(&dropped.net).collect();
+    assert_eq!(around, [[VisitId(held.head.start - 1), VisitId(held.head.start)]]);
+}
+
+#[test]
 fn a_cut_opens_a_closed_yarn_wherever_it_is() {
     let net = lay(&tube(6, 4, StitchSize::of_width(3e-3)).unwrap());
     let state = net.laid_state();
