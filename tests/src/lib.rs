@@ -18,7 +18,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 /// The meshes that ship with the program.
-pub const ASSETS: [&str; 5] = ["swatch", "cowl", "poncho", "hat", "pullover"];
+pub const ASSETS: [&str; 7] = ["swatch", "cowl", "poncho", "hat", "pullover", "sweater", "t-shirt"];
 
 /// A session that makes a cabled, ribbed and shaped panel of the swatch without labels: a script for `purlwise edit`, and
 /// what a person does in the window.

@@ -16,7 +16,7 @@ use stitch_mesh::stitch_mesh::StitchMesh;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Scenes by name, and what they are.
-pub const NAMED: [(&str, &str); 8] = [
+pub const NAMED: [(&str, &str); 9] = [
     ("free", "no gravity, nothing around"),
     ("board", "pinned out by its borders, as a knitter blocks it"),
     ("ground", "falling on the ground"),
@@ -25,13 +25,15 @@ pub const NAMED: [(&str, &str); 8] = [
     ("hang", "held by its last row"),
     ("pull", "its first and last rows drawn apart"),
     ("walk", "worn by a mannequin who walks (made for the bundled cowl)"),
+    ("dance", "worn by a mannequin who dances (made for the bundled sweater and t-shirt)"),
 ];
 
 /// Those of them that are files, as anybody could write them.
-const FILES: [(&str, &str); 3] = [
+const FILES: [(&str, &str); 4] = [
     ("hang", include_str!("../../../assets/scenes/hang.json")),
     ("pull", include_str!("../../../assets/scenes/pull.json")),
     ("walk", include_str!("../../../assets/scenes/walk.json")),
+    ("dance", include_str!("../../../assets/scenes/dance.json")),
 ];
 
 /// The box around yarn [m].

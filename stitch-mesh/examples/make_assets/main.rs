@@ -3,39 +3,13 @@
 //!
 //! All are polygons with a row structure that can be knitted, in metres, y up, front towards +z.
 
+mod garment;
+mod mesh;
+
+use garment::{SWEATER, T_SHIRT};
 use glam::DVec3;
-use std::collections::HashMap;
+use mesh::Mesh;
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write as _;
-
-/// A mesh in the making: vertices are named by any key, so that faces that share a vertex say so by sharing its name.
-#[derive(Default)]
-struct Mesh {
-    vertices: Vec<DVec3>,
-    names: HashMap<[i32; 3], usize>,
-    faces: Vec<Vec<usize>>,
-}
-
-impl Mesh {
-    fn vertex(&mut self, name: [i32; 3], position: DVec3) -> usize {
-        *self.names.entry(name).or_insert_with(|| {
-            self.vertices.push(position);
-            self.vertices.len() - 1
-        })
-    }
-
-    fn write(&self, name: &str, what: &str) -> std::io::Result<()> {
-        let mut text = format!("# Purlwise: {what} Unit: metre. Made by make_assets; CC0.\n");
-        for v in &self.vertices {
-            let _ = writeln!(text, "v {:.5} {:.5} {:.5}", v.x, v.y, v.z);
-        }
-        for face in &self.faces {
-            let corners: Vec<String> = face.iter().map(|v| (v + 1).to_string()).collect();
-            let _ = writeln!(text, "f {}", corners.join(" "));
-        }
-        std::fs::write(format!("assets/meshes/{name}.obj"), text)
-    }
-}
 
 /// Rings of quads about the y axis, from the lowest up; a last ring of radius zero closes the top with triangles.
 fn rings(around: i32, rings: &[(f64, f64)]) -> Mesh {
@@ -154,5 +128,7 @@ fn main() -> std::io::Result<()> {
     cowl().write("cowl", "a tube.")?;
     poncho().write("poncho", "a poncho, knitted from hem to neck.")?;
     hat().write("hat", "a hat with decreases to the crown.")?;
-    pullover().write("pullover", "a child's sleeveless pullover.")
+    pullover().write("pullover", "a child's sleeveless pullover.")?;
+    SWEATER.write("sweater", "a sweater in four pieces, to be sewn together.")?;
+    T_SHIRT.write("t-shirt", "a sleeveless shirt in two pieces, to be sewn together.")
 }
