@@ -33,7 +33,7 @@ const PLAIN: &str = "{\"do\":\"autolabel\"}\n{\"do\":\"tessellate\"}\n";
 const INCH: f64 = 0.0254;
 
 /// All of them.
-pub const ALL: [Bundled; 7] = [
+pub const ALL: [Bundled; 8] = [
     Bundled {
         name: "swatch",
         about: "A flat piece",
@@ -73,6 +73,14 @@ pub const ALL: [Bundled; 7] = [
         obj: include_bytes!("../../assets/meshes/pullover.obj"),
         script: include_str!("../../assets/meshes/pullover.jsonl"),
         scene: Some("form"),
+    },
+    Bundled {
+        name: "slipover",
+        about: "A child's sleeveless pullover in stockinette, knitted in the round, whose hem and collar roll up, on a bust",
+        width: 6e-3,
+        obj: include_bytes!("../../assets/meshes/slipover.obj"),
+        script: include_str!("../../assets/meshes/slipover.jsonl"),
+        scene: Some("bust"),
     },
     Bundled {
         name: "sweater",

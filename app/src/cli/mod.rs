@@ -49,7 +49,7 @@ enum Verb {
     },
     /// Makes a project from a mesh
     New {
-        /// A file (.obj), or a mesh that comes with the program: swatch, cowl, poncho, hat, pullover, sweater, t-shirt
+        /// A file (.obj), or a mesh that comes with the program: swatch, cowl, poncho, hat, pullover, slipover, sweater, t-shirt
         mesh: PathBuf,
         #[arg(short)]
         output: PathBuf,
@@ -93,7 +93,7 @@ enum Verb {
         project: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// free, board, ground, sphere, form, hang, pull, walk, dance, or a file (docs/scenes.md); the project's own scene if absent
+        /// free, board, ground, sphere, form, bust, hang, pull, walk, dance, or a file (docs/scenes.md); the project's own scene if absent
         #[arg(long)]
         scene: Option<String>,
         /// Simulated time

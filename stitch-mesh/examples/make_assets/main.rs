@@ -122,6 +122,49 @@ fn pullover() -> Mesh {
     mesh
 }
 
+/// A sleeveless pullover knitted in the round: a tube to the underarms, two panels beside the armholes, and above them a yoke
+/// that narrows over the shoulders to a collar.
+fn slipover() -> Mesh {
+    const HALF: i32 = 12; // faces across the front, and across the back
+    const ARMHOLE: std::ops::Range<usize> = 5..7; // rows of faces
+    /// Half the width, half the depth and the height of each ring [m].
+    const RINGS: [[f64; 3]; 14] = [
+        [0.172, 0.106, 0.00],
+        [0.172, 0.106, 0.04],
+        [0.172, 0.106, 0.08],
+        [0.172, 0.106, 0.12],
+        [0.172, 0.106, 0.16],
+        [0.170, 0.104, 0.20],
+        [0.165, 0.098, 0.24],
+        [0.157, 0.085, 0.28],
+        [0.143, 0.068, 0.31],
+        [0.100, 0.060, 0.33],
+        [0.068, 0.055, 0.35],
+        [0.064, 0.053, 0.38],
+        [0.064, 0.053, 0.41],
+        [0.064, 0.053, 0.44],
+    ];
+    let mut mesh = Mesh::default();
+    for j in 0..RINGS.len() - 1 {
+        let mut at = |i: i32, j: usize| {
+            let [width, depth, y] = RINGS[j];
+            // Once round: over the front from right to left as it is worn, and back.
+            let turn = PI * (f64::from(i) / f64::from(HALF) - 0.5);
+            let z = depth * turn.cos().abs().powf(0.6) * turn.cos().signum();
+            mesh.vertex([i % (2 * HALF), j as i32, 0], DVec3::new(width * turn.sin(), y, z))
+        };
+        let mut faces = Vec::new();
+        for i in 0..2 * HALF {
+            let at_side = [0, HALF - 1, HALF, 2 * HALF - 1].contains(&i);
+            if !(at_side && ARMHOLE.contains(&j)) {
+                faces.push(vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        mesh.faces.extend(faces);
+    }
+    mesh
+}
+
 fn main() -> std::io::Result<()> {
     std::fs::create_dir_all("assets/meshes")?;
     swatch().write("swatch", "a flat piece.")?;
@@ -129,6 +172,7 @@ fn main() -> std::io::Result<()> {
     poncho().write("poncho", "a poncho, knitted from hem to neck.")?;
     hat().write("hat", "a hat with decreases to the crown.")?;
     pullover().write("pullover", "a child's sleeveless pullover.")?;
+    slipover().write("slipover", "a sleeveless pullover with a collar, knitted in the round.")?;
     SWEATER.write("sweater", "a sweater in four pieces, to be sewn together.")?;
     T_SHIRT.write("t-shirt", "a sleeveless shirt in two pieces, to be sewn together.")
 }
