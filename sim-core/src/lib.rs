@@ -62,7 +62,7 @@ pub use body::Body;
 pub use carry_over::carry_over;
 pub use clearance::least_distance;
 pub use closed_mesh::{ClosedMesh, ClosedMeshError, Triangles};
-pub use costs::{Costs, STAGES};
+pub use costs::{Costs, STAGES, Work};
 pub use curves::curves;
 pub use energies::Energies;
 pub use facts::Facts;

@@ -63,6 +63,17 @@ impl Factor {
         }
     }
 
+    /// Its size, packed [bytes], and the operations that making it takes.
+    pub fn work(&self) -> (u64, u64) {
+        let of = |group: &Group| {
+            let (n, m) = (group.unknowns.len() as u64, group.rows.len() as u64);
+            // (C; Q) and U of a front, and half of Q Qᵀ; a multiplication and an addition each.
+            2 * (n * n * n / 3 + n * n * m + n * n * n / 6 + n * m * m / 2)
+        };
+        let operations = self.pattern.groups.iter().map(of).sum();
+        (size_of_val(&self.tiles[..]) as u64, operations)
+    }
+
     /// Factorises `matrix`.
     pub fn factorise(&mut self, matrix: &BlockMatrix) -> Result<(), NoFactor> {
         let diagonal = |j: usize| matrix.value[matrix.column[j] as usize];
