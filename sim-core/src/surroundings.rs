@@ -60,7 +60,9 @@ impl Stepper {
                     continue;
                 }
                 self.add_point(node, &contact, x, h);
-                let drag = contact.drag((gap, normal), v - surface, mass, h);
+                // It is pressed as deep as it is in the surface now, not as this leaves it or comes upon it in the step.
+                let pressed = gap + h * surface.dot(normal);
+                let drag = contact.drag((pressed, normal), v - surface, mass, h);
                 let n = normal.to_array();
                 self.add_block(node, |i, j| h * drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
                 self.push(node, h * drag * (surface - surface.dot(normal) * normal));
