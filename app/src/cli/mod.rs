@@ -217,6 +217,9 @@ enum Verb {
         /// What to measure
         #[arg(value_enum, default_value = "pull")]
         suite: bench::Suite,
+        /// For scale: leave out what has more loops
+        #[arg(long, default_value_t = 60_000)]
+        most_loops: usize,
         #[command(flatten)]
         print: Output,
     },
@@ -353,7 +356,7 @@ fn run(arguments: Arguments) -> Result<()> {
             files::write_png(&output, &pictures)
         }
         Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
-        Verb::Bench { suite, print } => bench::run(suite, print),
+        Verb::Bench { suite, most_loops, print } => bench::run(suite, most_loops, print),
         Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
