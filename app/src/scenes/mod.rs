@@ -2,6 +2,7 @@
 
 mod file;
 mod holds;
+mod meshes;
 mod skeleton;
 
 use crate::fabric::Fabric;
