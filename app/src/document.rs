@@ -141,7 +141,7 @@ impl Document {
     /// began with another net (one from before an edit) is dropped.
     pub fn take_over(&mut self, moved: Moved) {
         if let Some(fabric) = &self.project.fabric
-            && Arc::ptr_eq(&moved.from, &fabric.net)
+            && fabric.net_if_laid().is_some_and(|net| Arc::ptr_eq(&moved.from, net))
             && moved.state.fits(&moved.net)
             && moved.state.is_finite()
         {

@@ -207,7 +207,7 @@ fn check_mesh(stitches: &StitchMesh) {
 
 /// What holds for the yarn of any stitch mesh.
 fn check_yarn(fabric: &Fabric) {
-    let net = &fabric.net;
+    let net = fabric.net();
     assert!(net.nodes.iter().all(|n| n.position.is_finite()));
     assert!(fabric.state().fits(net));
     let loose = loose_loops(&fabric.stitches, net);
@@ -233,7 +233,7 @@ fn check_yarn(fabric: &Fabric) {
 /// The yarn of every stitch goes on into its neighbours': from the right one to the left along the row, and up through every
 /// course edge.
 fn check_joints(fabric: &Fabric) {
-    let (stitches, net) = (&fabric.stitches, &fabric.net);
+    let (stitches, net) = (&fabric.stitches, fabric.net());
     let mesh = stitches.mesh();
     let mut joined: HashSet<[FaceId; 2]> = HashSet::new();
     for yarn in &net.yarns {
@@ -274,7 +274,7 @@ fn check(project: &Project) {
     let fabric = project.fabric().unwrap();
     check_mesh(&fabric.stitches);
     check_yarn(fabric);
-    project.scene.validate(fabric.net.nodes.len()).unwrap();
+    project.scene.validate(fabric.net().nodes.len()).unwrap();
 }
 
 /// The project as its file has it.
