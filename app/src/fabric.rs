@@ -179,6 +179,17 @@ impl Fabric {
         if self.surgery == Surgery::default() {
             return Self { state: None, facts: None, ..self.clone() };
         }
+        self.laid_again()
+    }
+
+    /// Leaves only what is needed to have the fabric again: yarn that has never moved is laid anew when it is asked for.
+    pub(crate) fn put_away(&mut self) {
+        if self.state.is_none() && self.surgery == Surgery::default() {
+            *self = self.laid_again();
+        }
+    }
+
+    fn laid_again(&self) -> Self {
         Self::of(self.stitches.clone(), self.rest_shape.clone(), self.woven.clone(), lay)
     }
 

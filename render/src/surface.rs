@@ -106,11 +106,11 @@ impl SurfaceMesh {
         });
         let [corner, index] = now.starts[same].map(|n| n as usize);
         let limit = gpu.device.limits().max_buffer_size;
-        let colors = now.corner_colors(0..now.count());
         self.count = indices.len() as u32;
         let shape = bytemuck::cast_slice(&now.corners);
         self.shape.write_from(gpu, shape, corner * size_of::<[Vec3; 2]>(), limit)?;
         self.indices.write_from(gpu, bytemuck::cast_slice(&indices), index * size_of::<u32>(), limit)?;
+        let colors = now.corner_colors(0..now.count());
         self.colors.write_from(gpu, bytemuck::cast_slice(&colors), corner * size_of::<Vec4>(), limit)
     }
 
