@@ -1,5 +1,6 @@
 //! The simulator: a net, its state, and time going by.
 
+use crate::costs::{Costs, Work};
 use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
@@ -9,7 +10,7 @@ use crate::materials::Materials;
 use crate::model::{Model, NetError};
 use crate::noise::unit_hash;
 use crate::scene::{Scene, SceneError};
-use crate::solver::cholesky::SolveError;
+use crate::solver::{Method, Solver};
 use crate::step::{Rejection, Stepper, Stuck};
 use crate::surgery::slip::slipped;
 use crate::surgery::{self, Operation, Surgery, SurgeryError};
@@ -72,9 +73,6 @@ pub enum SimError {
     /// The operation.
     #[error(transparent)]
     Surgery(#[from] SurgeryError),
-    /// The solver could not be set up.
-    #[error(transparent)]
-    Solver(#[from] SolveError),
     /// No time step is small enough. The state is that of the last good step.
     #[error("stuck at {time_s:.3} s: even a step of {step_s:.1e} s fails, because {cause}")]
     Stuck {
@@ -140,6 +138,8 @@ pub struct Simulator {
     steps: u64,
     rejected: u64,
     surgery: Surgery,
+    /// None where the faster one is chosen.
+    method: Option<Method>,
 }
 
 impl Simulator {
@@ -161,7 +161,7 @@ impl Simulator {
             let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
             *x += DVec3::new(noise(0), noise(1), noise(2));
         }
-        let stepper = Stepper::new(model, &materials)?;
+        let stepper = Stepper::new(model, &materials, None);
         let anchors = Anchors::at(&stepper.stacks, &state.sliding);
         let step = scene.time_step;
         Ok(Self {
@@ -176,6 +176,7 @@ impl Simulator {
             steps: 0,
             rejected: 0,
             surgery: Surgery::default(),
+            method: None,
         })
     }
 
@@ -227,7 +228,7 @@ impl Simulator {
             let followed = |a: Option<VisitId>, b| a.is_some() && a.and_then(|a| before.next(a)) == b;
             !(followed(was[0], was[1]) && followed(was[1], was[2]))
         });
-        let stepper = Stepper::new(model, &self.materials)?;
+        let stepper = Stepper::new(model, &self.materials, self.method);
         let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
         self.surgery.add(operation, self.state().taken_in);
         self.stepper = stepper;
@@ -347,6 +348,33 @@ impl Simulator {
     /// Kinetic energy [J].
     pub fn kinetic_energy(&self) -> f64 {
         self.stepper.model.kinetic_energy(&self.materials, self.state())
+    }
+
+    /// Solves the systems of its steps by `method`, whatever the size of the fabric; by the faster one again with none.
+    pub fn set_method(&mut self, method: Option<Method>) {
+        let Stepper { model, system, solver, .. } = &mut self.stepper;
+        *solver = Solver::new(model, &system.matrix, method);
+        self.method = method;
+    }
+
+    /// How the systems of its steps are solved.
+    pub fn method(&self) -> Method {
+        self.stepper.solver.method()
+    }
+
+    /// What its solver has to do.
+    pub fn work(&self) -> Work {
+        self.stepper.solver.work(&self.stepper.system.matrix)
+    }
+
+    /// What its steps have cost since it began or yarn was last cut.
+    pub fn costs(&self) -> Costs {
+        self.stepper.costs
+    }
+
+    /// Counts what its steps cost from now on.
+    pub fn reset_costs(&mut self) {
+        self.stepper.costs = Costs::default();
     }
 
     /// What there is to report of the simulation so far. Looks for the closest yarns, which takes about as long as a step.

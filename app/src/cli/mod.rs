@@ -15,7 +15,7 @@ use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
 use crate::lab::Experiment;
 use crate::open::open_any;
-use crate::project::{DEFAULT_STITCH_WIDTH, Project};
+use crate::project::Project;
 use crate::{export, files, library, sheet};
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
@@ -49,12 +49,13 @@ enum Verb {
     },
     /// Makes a project from a mesh
     New {
+        /// A file (.obj), or a mesh that comes with the program: swatch, cowl, poncho, hat, pullover, slipover, sweater, t-shirt
         mesh: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// Width of a stitch in millimetres
-        #[arg(long, value_name = "MM", default_value_t = DEFAULT_STITCH_WIDTH * 1e3)]
-        stitch_size: f64,
+        /// Width of a stitch in millimetres; 10, or as the mesh that comes with the program is made for
+        #[arg(long, value_name = "MM")]
+        stitch_size: Option<f64>,
         /// Unit of the mesh
         #[arg(long, value_enum, default_value = "m")]
         unit: UnitName,
@@ -92,7 +93,7 @@ enum Verb {
         project: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// free, board, ground, sphere, form, hang, pull, walk, or a file (docs/scenes.md); the project's own scene if absent
+        /// free, board, ground, sphere, form, bust, hang, pull, walk, dance, or a file (docs/scenes.md); the project's own scene if absent
         #[arg(long)]
         scene: Option<String>,
         /// Simulated time
@@ -216,6 +217,9 @@ enum Verb {
         /// What to measure
         #[arg(value_enum, default_value = "pull")]
         suite: bench::Suite,
+        /// For scale: leave out what has more loops
+        #[arg(long, default_value_t = 60_000)]
+        most_loops: usize,
         #[command(flatten)]
         print: Output,
     },
@@ -352,7 +356,7 @@ fn run(arguments: Arguments) -> Result<()> {
             files::write_png(&output, &pictures)
         }
         Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
-        Verb::Bench { suite, print } => bench::run(suite, print),
+        Verb::Bench { suite, most_loops, print } => bench::run(suite, most_loops, print),
         Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }
