@@ -133,11 +133,8 @@ impl LinePipeline {
             pass.set_pipeline(&self.0);
             pass.set_vertex_buffer(0, buffer.slice(..));
             let lines = &mesh.lines;
-            let drawn = match part {
-                None => vec![0..lines.len()],
-                Some(part) => runs(lines.len(), |line| part.is_reached_by(lines[line].ends.into_iter())),
-            };
-            for run in drawn {
+            let reached = |line: usize| part.is_none_or(|p| p.is_reached_by(lines[line].ends.into_iter()));
+            for run in runs(lines.len(), reached) {
                 pass.draw(0..4, run.start as u32..run.end as u32);
             }
         }

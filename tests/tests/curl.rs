@@ -60,10 +60,6 @@ fn hem_and_collar(project: &Project) -> [f64; 2] {
     }
     let facts = simulator.facts();
     let worn = turns(&simulator);
-    println!(
-        "{laid:.1?} → {worn:.1?}, {:.3} stretched, {} rejected",
-        facts.max_stretch, facts.rejected_steps
-    );
     assert!(facts.max_stretch < 0.02 && facts.max_penetration_mm < 3.0);
     [worn[0] - laid[0], worn[1] - laid[1]]
 }

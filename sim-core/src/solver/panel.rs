@@ -42,8 +42,7 @@ impl pulp::WithSimd for Elimination<'_> {
             let factor = |k: usize| before[k * height + j];
             take_away(column, j, |k| &before[k * height + j..(k + 1) * height], factor);
             let pivot = column[0];
-            // Negated, so that a NaN is refused too.
-            if !(pivot > 0.0) {
+            if pivot.is_nan() || pivot <= 0.0 {
                 return Err(NotPositive);
             }
             let by = 1.0 / pivot.sqrt();
