@@ -46,7 +46,7 @@ fn hem_and_collar(project: &Project) -> [f64; 2] {
     let gravity = project.scene.gravity * (6e-3 / project.size.width);
     let scene = Scene { gravity, ..project.scene.clone() };
     let state = (*fabric.state()).clone();
-    let mut simulator = Simulator::new(&fabric.net, project.materials.clone(), scene, state).unwrap();
+    let mut simulator = Simulator::new(fabric.net(), project.materials.clone(), scene, state).unwrap();
     let rows = fabric.stitches.rows();
     let turns = |simulator: &Simulator| {
         let stitches = &fabric.stitches;

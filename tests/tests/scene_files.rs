@@ -58,7 +58,7 @@ fn parts_of_the_fabric_are_found_by_name_and_by_place() {
     let counts: Vec<usize> = project.scene.clamps.iter().map(|c| c.nodes.len()).collect();
     assert_eq!(counts[0], 4 * fabric.stitches.rows()[1].faces.len());
     assert_eq!(counts[1..3], [8, 1]);
-    let half = fabric.net.nodes.len() as f64 / 2.0;
+    let half = fabric.net().nodes.len() as f64 / 2.0;
     assert!((counts[3] as f64 / half - 1.0).abs() < 0.1, "{} of {half}", counts[3]);
     assert_eq!(project.scene.clamps[3].stiffness, 2.5);
 }

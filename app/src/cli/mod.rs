@@ -326,7 +326,7 @@ fn run(arguments: Arguments) -> Result<()> {
             let path = project.display().to_string();
             let project = Project::open(&project)?;
             let fabric = project.fabric().context(path)?;
-            let curves = curves(&fabric.net, &fabric.state(), &project.materials);
+            let curves = curves(fabric.net(), &fabric.state(), &project.materials);
             files::write(&output, &export::encode(&curves, &output)?)?;
             let points: usize = curves.curves.iter().map(|c| c.points.len()).sum();
             let facts = json!({"file": output, "yarns": curves.curves.len(), "points": points});

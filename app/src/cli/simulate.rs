@@ -108,12 +108,12 @@ pub fn simulate(
 fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
     let fabric = project.fabric()?;
     let state = (*fabric.state()).clone();
-    Ok(Simulator::new(&fabric.net, project.materials.clone(), scene.clone(), state)?)
+    Ok(Simulator::new(fabric.net(), project.materials.clone(), scene.clone(), state)?)
 }
 
 /// The project when the simulation that began with it has come so far.
 fn moved(project: &Project, simulator: &Simulator) -> Result<Project> {
     let mut after = project.clone();
-    after.take_over(Moved::by(simulator, &project.fabric()?.net), Some(simulator.facts()));
+    after.take_over(Moved::by(simulator, project.fabric()?.net()), Some(simulator.facts()));
     Ok(after)
 }

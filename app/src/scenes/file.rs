@@ -234,6 +234,6 @@ pub(super) fn read(text: &str, folder: &Path, fabric: &Fabric, stiffness: f64) -
         clamps: file.hold.iter().enumerate().map(clamp).collect::<Result<_>>()?,
         time_step: 1e-3 * file.time_step_ms,
     };
-    scene.validate(fabric.net.nodes.len())?;
+    scene.validate(fabric.net().nodes.len())?;
     Ok(scene)
 }

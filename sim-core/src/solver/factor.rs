@@ -202,16 +202,17 @@ fn eliminate(
         }
         inverse.resize(n * n, 0.0);
         panel::eliminate(front, &mut inverse, n).map_err(|_| NoFactor)?;
+        let product = &mut product[..m * m];
         let rows = MatRef::from_column_major_slice(front, n + m, n).subrows(n, m);
         triangular::matmul(
-            MatMut::from_column_major_slice_mut(&mut product[..m * m], m, m),
+            MatMut::from_column_major_slice_mut(product, m, m),
             TriangularLower,
             Accum::Replace,
             rows,
             Rectangular,
             rows.transpose(),
             Rectangular,
-            1.0,
+            -1.0,
             Par::Seq,
         );
         let scale = &mut columns[group.unknowns.start - part.unknowns.start..][..n];
@@ -223,7 +224,7 @@ fn eliminate(
                 Some(to) => &mut outer[to..to + len],
                 None => &mut fronts[to - part.fronts.start..to - part.fronts.start + len],
             };
-            changed.iter_mut().zip(&product[from..from + len]).for_each(|(entry, change)| *entry -= change);
+            changed.iter_mut().zip(&product[from..from + len]).for_each(|(entry, change)| *entry += change);
         }
     }
     Ok(())

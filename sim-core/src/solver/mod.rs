@@ -63,7 +63,7 @@ const CROSSOVER: usize = 1_500;
 const TOLERANCE: f64 = 5e-4;
 
 /// The same with a complete factorisation, of which each iteration makes the error some hundred times smaller.
-const TOLERANCE_OF_COMPLETE: f64 = 1e-6;
+const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
 
 /// Systems solved directly after one that conjugate gradients failed on: what made that one hard is still there in the next
 /// few, and trying in vain costs as much as solving.

@@ -37,7 +37,7 @@ pub fn run(most_loops: usize, print: Output) -> Result<()> {
         let loops = fabric.stitches.loop_count();
         let scene = Scene { time_step: STEP, ..project.scene.clone() };
         let state = (*fabric.state()).clone();
-        let mut simulator = Simulator::new(&fabric.net, project.materials.clone(), scene, state)?;
+        let mut simulator = Simulator::new(fabric.net(), project.materials.clone(), scene, state)?;
         for _ in 0..BEFORE {
             simulator.step()?;
         }
