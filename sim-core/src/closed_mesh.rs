@@ -118,6 +118,13 @@ impl ClosedMesh {
         &self.triangles
     }
 
+    /// The grid of distances: its lowest corner, the side of a cell [m], corners along each axis, and the distances there, x
+    /// running fastest [m].
+    pub(crate) fn grid(&self) -> (DVec3, f64, UVec3, &[f32]) {
+        let Field { low, cell, corners, distance } = &*self.field;
+        (*low, *cell, *corners, distance)
+    }
+
     /// Signed distance of `x` from the surface, negative inside [m], and the unit normal there.
     pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
         self.field.sample(x)

@@ -3,6 +3,7 @@
 use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
+use crate::gpu::GpuError;
 use crate::local::LEAST_LENGTH;
 use crate::material::MaterialError;
 use crate::materials::Materials;
@@ -22,14 +23,14 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
 /// it curls would hang on rounding.
-const NOISE: f64 = 1e-6;
+pub(crate) const NOISE: f64 = 1e-6;
 
 /// Halvings of the time step before a simulation is given up; the last is a thousandth of the first.
-const MOST_HALVINGS: i32 = 10;
+pub(crate) const MOST_HALVINGS: i32 = 10;
 
 /// Growth of the time step from step to step after it had to be halved. What made one fail lasts for a few: of a thousand random
 /// swatches 2.1 steps in a hundred were taken again with 2.
-const GROWTH: f64 = 1.4;
+pub(crate) const GROWTH: f64 = 1.4;
 
 /// Steps between two looks at the kinetic energy while settling.
 const SETTLE_INTERVAL: u64 = 10;
@@ -75,6 +76,9 @@ pub enum SimError {
     /// The solver could not be set up.
     #[error(transparent)]
     Solver(#[from] SolveError),
+    /// The GPU.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
     /// No time step is small enough. The state is that of the last good step.
     #[error("stuck at {time_s:.3} s: even a step of {step_s:.1e} s fails, because {cause}")]
     Stuck {
@@ -368,7 +372,7 @@ impl Simulator {
     }
 }
 
-fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {
+pub(crate) fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {
     let net = &model.net;
     if !state.fits(net) {
         return Err(SimError::StateShape {

@@ -14,7 +14,7 @@ use glam::{DMat3, DVec3};
 
 /// Error at which a solution is good enough, relative to the solution, in the norm of the energy. Hanging stockinette of 24 × 24
 /// stitches is then, after 0.2 s and 65 mm, at most 8 µm from where the direct solver has it; at 1e-3 it is some 100 µm.
-const TOLERANCE: f64 = 1e-4;
+pub(crate) const TOLERANCE: f64 = 1e-4;
 
 /// A matrix M near A that is easily inverted.
 pub(crate) trait Preconditioner {

@@ -27,13 +27,13 @@
 mod agreement;
 pub(crate) mod cholesky;
 pub(crate) mod gradients;
-mod groups;
+pub(crate) mod groups;
 mod incomplete;
 pub(crate) mod matrix;
 mod ordering;
 mod parts;
 mod pattern;
-mod product;
+pub(crate) mod product;
 pub(crate) mod tail;
 
 use crate::model::Model;
