@@ -103,14 +103,20 @@ impl Chart {
         &row[column % row.len()]
     }
 
-    /// What the chart makes of every face in `rows` (all rows of a stitch mesh, or some of them in order) that joins one loop to one.
+    /// What the chart makes of every face in `rows` (all rows of a stitch mesh, or some of them, lower ones first) that joins
+    /// one loop to one. Lines are counted up the wale, so that in a garment of several pieces each of them, and each side of
+    /// a neck, has the whole pattern.
     pub fn over(&self, stitches: &StitchMesh, rows: &[Row]) -> Vec<(FaceId, Stitch)> {
         let mut set = Vec::new();
-        for (r, row) in rows.iter().enumerate() {
+        let mut line = vec![None; stitches.mesh().face_count()];
+        for row in rows {
+            let below = row.faces.iter().flat_map(|f| stitches.below(*f)).filter_map(|f| line[f.index()]);
+            let above = below.max().map_or(0, |l: usize| l + 1);
             for (column, face) in row.faces.iter().enumerate() {
+                line[face.index()] = Some(above);
                 let now = stitches.stitch(*face);
                 if (now.bottoms(), now.tops()) == (1, 1) {
-                    set.push((*face, self.at(r, column).clone()));
+                    set.push((*face, self.at(above, column).clone()));
                 }
             }
         }
@@ -176,6 +182,7 @@ fn run(stitches: &StitchMesh, seed: FaceId, column: i64, open: &mut HashSet<Face
 mod tests {
     use super::*;
     use stitch_mesh::edge_counts::StitchSize;
+    use stitch_mesh::mesh::PolygonMesh;
     use stitch_mesh::pieces::rectangle;
 
     #[test]
@@ -191,6 +198,24 @@ mod tests {
             .map(|r| r.faces.iter().map(|f| fabric.stitch(*f).to_string()).collect())
             .collect();
         assert_eq!(rows, ["kkppkk", "ppkkpp", "kkppkk", "ppkkpp"]);
+    }
+
+    #[test]
+    fn every_piece_has_the_whole_chart() {
+        let chart: Chart = "k\np".parse().unwrap();
+        let piece = rectangle(2, 4, StitchSize::of_width(3e-3)).unwrap();
+        let mesh = piece.mesh();
+        let positions = mesh.positions().iter().chain(mesh.positions()).copied().collect();
+        let one = mesh.face_lists();
+        let other = one.iter().map(|face| face.iter().map(|v| v + mesh.vertex_count() as u32).collect());
+        let faces: Vec<Vec<u32>> = one.iter().cloned().chain(other).collect();
+        let two = PolygonMesh::new(positions, &faces).unwrap();
+        let two = StitchMesh::new(two, vec![Stitch::knit(); faces.len()]).unwrap();
+        let set = chart.over(&two, &two.rows());
+        assert_eq!(set.len(), 16);
+        for (face, stitch) in set {
+            assert_eq!(stitch, if face.0 / 2 % 2 == 0 { Stitch::knit() } else { Stitch::purl() }, "{face}");
+        }
     }
 
     #[test]

@@ -7,8 +7,9 @@
 //! Friction, bodies and pins touch single nodes and are added by the step itself.
 //!
 //! # Practice
-//! Elements are evaluated in parallel, a batch at a time, and added up in their order, so the sums have the same bits
-//! whatever the number of threads.
+//! The matrix is stored by columns, and the columns of a run of nodes follow each other. So the nodes are shared out in strips,
+//! and the elements that lie whole inside of one are evaluated and added up strip beside strip; those across two come after. Strips
+//! depend on the net alone, so the sums have the same bits whatever the number of threads.
 
 use crate::air;
 use crate::friction::FrictionSpring;
@@ -21,11 +22,13 @@ use crate::solver::matrix::BlockMatrix;
 use crate::woven::ShearTerm;
 use glam::DVec3;
 use rayon::prelude::*;
-use stitch_mesh::ids::VisitId;
+use std::ops::Range;
+use stitch_mesh::ids::NodeId;
 use stitch_mesh::yarn_net::YarnState;
 
-/// Elements evaluated before they are added up: enough to share out, few enough to stay in the cache.
-const BATCH: usize = 2048;
+/// Nodes in a strip at least, and strips at most.
+const STRIP: usize = 4096;
+const MOST_STRIPS: usize = 16;
 
 /// Where a step starts from.
 #[derive(Clone, Copy)]
@@ -51,38 +54,101 @@ struct Contribution<const K: usize, const N: usize> {
     pull: [DVec3; K],
 }
 
-/// Where the unknowns of a stencil are.
+/// Where the unknowns of a stencil are, counted from the beginning of its strip.
 #[derive(Clone, Copy, Debug)]
 struct Places<const K: usize> {
-    visits: [VisitId; K],
+    /// The stencil's place among all of its kind.
+    term: u32,
+    /// Of each visit in [`System::pull`].
+    slot: [u32; K],
     /// First unknown of each visit's node.
     start: [u32; K],
     /// Place of the sliding coordinate within its node, or [`FROZEN`].
     sliding: [u32; K],
-    /// Place of the block (row a, column b) where node a ≥ node b.
+    /// First entry of the block (row a, column b) where node a ≥ node b.
     block: [[u32; K]; K],
+    /// From an entry to that beside it in the next column, in the first column of each node. It is one less in each further one.
+    stride: [u32; K],
 }
 
 impl<const K: usize> Places<K> {
-    fn new(model: &Model, matrix: &BlockMatrix, stencil: &Stencil<K>) -> Self {
+    fn new(
+        model: &Model,
+        matrix: &BlockMatrix,
+        (term, stencil): (usize, &Stencil<K>),
+        strip: &Strip,
+    ) -> Self {
         let node = stencil.nodes.map(|n| n.index());
-        let start = node.map(|n| model.start[n]);
+        let own = node.map(|n| model.start[n]);
+        let slot = std::array::from_fn(|k| {
+            let stack = &model.net.nodes[node[k]].visits;
+            let place = stack.iter().position(|v| *v == stencil.visits[k]).unwrap_or_default();
+            model.slot[node[k]] + place as u32 - strip.slots.start
+        });
         let sliding = std::array::from_fn(|k| match model.sliding[stencil.visits[k].index()] {
             FROZEN => FROZEN,
-            dof => dof - start[k],
+            dof => dof - own[k],
         });
         let block = std::array::from_fn(|a| {
-            std::array::from_fn(|b| if node[a] < node[b] { 0 } else { matrix.block(node[a], node[b]) })
+            std::array::from_fn(|b| match matrix.block(node[a], node[b]) {
+                _ if node[a] < node[b] => 0,
+                block => matrix.place(own[b], block, 0, 0) as u32 - strip.entries.start,
+            })
         });
-        Self { visits: stencil.visits, start, sliding, block }
+        let stride = own.map(|s| matrix.column[s as usize + 1] - matrix.column[s as usize] - 1);
+        Self { term: term as u32, slot, start: own.map(|s| s - strip.unknowns.start), sliding, block, stride }
     }
 
-    /// Place within its node of the unknown `i` (0, 1, 2: position, 3: sliding) of visit `k`.
-    fn unknown(&self, k: usize, i: usize) -> Option<u32> {
-        match (i, self.sliding[k]) {
-            (3, FROZEN) => None,
-            (3, place) => Some(place),
-            _ => Some(i as u32),
+    /// From an entry of the first column of visit k's node to that beside it in a further one.
+    #[inline(always)]
+    fn column(&self, k: usize, unknown: usize) -> usize {
+        unknown * self.stride[k] as usize - unknown * unknown.saturating_sub(1) / 2
+    }
+}
+
+/// A run of nodes, and what of the system is theirs.
+#[derive(Clone, Debug)]
+struct Strip {
+    nodes: Range<u32>,
+    slots: Range<u32>,
+    unknowns: Range<u32>,
+    entries: Range<u32>,
+}
+
+impl Strip {
+    fn new(model: &Model, matrix: &BlockMatrix, nodes: Range<u32>) -> Self {
+        let between = |of: &dyn Fn(usize) -> u32| of(nodes.start as usize)..of(nodes.end as usize);
+        let unknowns = between(&|n| model.start[n]);
+        let entries = matrix.column[unknowns.start as usize]..matrix.column[unknowns.end as usize];
+        Self { slots: between(&|n| model.slot[n]), unknowns, entries, nodes }
+    }
+}
+
+/// Elements that touch one strip alone.
+struct Share {
+    segments: Vec<Places<2>>,
+    bends: Vec<Places<3>>,
+    wraps: Vec<Places<4>>,
+    shears: Vec<Places<4>>,
+}
+
+impl Share {
+    /// The elements of `model` that `has` takes by their nodes, their places counted from the beginning of `strip`.
+    fn new(model: &Model, matrix: &BlockMatrix, strip: &Strip, has: &dyn Fn(&[NodeId]) -> bool) -> Self {
+        fn places<'a, const K: usize>(
+            stencils: impl Iterator<Item = &'a Stencil<K>>,
+            (model, matrix, strip): (&Model, &BlockMatrix, &Strip),
+            has: &dyn Fn(&[NodeId]) -> bool,
+        ) -> Vec<Places<K>> {
+            let own = stencils.enumerate().filter(|(_, s)| has(&s.nodes));
+            own.map(|s| Places::new(model, matrix, s, strip)).collect()
+        }
+        let of = (model, matrix, strip);
+        Self {
+            segments: places(model.segments.iter().map(|t| &t.stencil), of, has),
+            bends: places(model.bends.iter().map(|t| &t.stencil), of, has),
+            wraps: places(model.wraps.iter().map(|t| &t.stencil), of, has),
+            shears: places(model.shears.iter().map(|t| &t.stencil), of, has),
         }
     }
 }
@@ -92,23 +158,31 @@ pub(crate) struct System {
     pub matrix: BlockMatrix,
     /// Right-hand side [dof_count] [kg m/s].
     pub rhs: Vec<f64>,
-    /// Stretch and bend force on each visit, [visit_count] [N].
+    /// Stretch and bend force on each visit, node by node, each front to back, [visit_count] [N].
     pub pull: Vec<DVec3>,
-    segments: Vec<Places<2>>,
-    bends: Vec<Places<3>>,
-    wraps: Vec<Places<4>>,
-    shears: Vec<Places<4>>,
+    /// The strips, each with the elements in it.
+    strips: Vec<(Strip, Share)>,
+    /// The elements across strips.
+    across: Share,
 }
 
 impl System {
     /// An empty system for `model`.
     pub fn new(model: &Model) -> Self {
         let matrix = BlockMatrix::new(model);
+        let count = model.net.nodes.len() as u32;
+        let width = count.div_ceil((count as usize / STRIP).clamp(1, MOST_STRIPS) as u32).max(1);
+        let strips = (0..count).step_by(width as usize).map(|first| {
+            let strip = Strip::new(model, &matrix, first..count.min(first + width));
+            let inside = |nodes: &[NodeId]| nodes.iter().all(|n| strip.nodes.contains(&n.0));
+            let share = Share::new(model, &matrix, &strip, &inside);
+            (strip, share)
+        });
+        let all = Strip::new(model, &matrix, 0..count);
+        let across = |nodes: &[NodeId]| nodes.iter().any(|n| n.0 / width != nodes[0].0 / width);
         Self {
-            segments: model.segments.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
-            bends: model.bends.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
-            wraps: model.wraps.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
-            shears: model.shears.iter().map(|t| Places::new(model, &matrix, &t.stencil)).collect(),
+            strips: strips.collect(),
+            across: Share::new(model, &matrix, &all, &across),
             rhs: vec![0.0; model.dof_count()],
             pull: vec![DVec3::ZERO; model.sliding.len()],
             matrix,
@@ -117,15 +191,26 @@ impl System {
 
     /// Fills the system with every force of the yarn itself.
     pub fn assemble(&mut self, model: &Model, start: Start) {
-        self.matrix.clear();
-        self.rhs.fill(0.0);
-        self.pull.fill(DVec3::ZERO);
-        let Self { matrix, rhs, pull, .. } = self;
-        let mut sum = Sum { matrix, rhs, pull };
-        sum.add(&model.segments, &self.segments, |term| segment(term, start));
-        sum.add(&model.bends, &self.bends, |term| bend(term, start));
-        sum.add(&model.wraps, &self.wraps, |term| wrap(term, start));
-        sum.add(&model.shears, &self.shears, |term| shear(term, start));
+        let Self { matrix, rhs, pull, strips, across } = self;
+        matrix.tail.clear();
+        let (mut values, mut sides, mut pulls) = (&mut matrix.value[..], &mut rhs[..], &mut pull[..]);
+        let mut sums = Vec::with_capacity(strips.len());
+        for (strip, share) in &*strips {
+            let (value, rhs, pull);
+            (value, values) = values.split_at_mut(strip.entries.len());
+            (rhs, sides) = sides.split_at_mut(strip.unknowns.len());
+            (pull, pulls) = pulls.split_at_mut(strip.slots.len());
+            sums.push((Sum { value, rhs, pull }, share));
+        }
+        let fill = |(sum, share): &mut (Sum, &Share)| {
+            sum.clear();
+            sum.add(model, share, start);
+        };
+        match &mut sums[..] {
+            [one] => fill(one),
+            many => many.par_iter_mut().for_each(fill),
+        }
+        Sum { value: &mut matrix.value, rhs, pull }.add(model, across, start);
     }
 }
 
@@ -156,43 +241,99 @@ impl System {
     }
 }
 
-/// The parts of a system that elements are added to.
+/// Elements to be added up, compiled for each width of vectors that processors have. Which of them runs makes no difference to the
+/// bits, as nothing is fused or put into another order.
+struct Adding<'a, 'b> {
+    sum: &'a mut Sum<'b>,
+    model: &'a Model,
+    share: &'a Share,
+    start: Start<'a>,
+}
+
+impl pulp::WithSimd for Adding<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.sum.add_each(self.model, self.share, self.start);
+    }
+}
+
+/// A part of a system that elements are added to.
 struct Sum<'a> {
-    matrix: &'a mut BlockMatrix,
+    value: &'a mut [f64],
     rhs: &'a mut [f64],
     pull: &'a mut [DVec3],
 }
 
 impl Sum<'_> {
-    fn add<T: Sync, const K: usize, const N: usize>(
-        &mut self,
-        terms: &[T],
-        places: &[Places<K>],
-        evaluate: impl Fn(&T) -> Contribution<K, N> + Sync,
-    ) {
-        let mut batch = Vec::with_capacity(BATCH.min(terms.len()));
-        for (terms, places) in terms.chunks(BATCH).zip(places.chunks(BATCH)) {
-            terms.par_iter().with_min_len(BATCH / 16).map(&evaluate).collect_into_vec(&mut batch);
-            for (contribution, places) in batch.iter().zip(places) {
-                self.scatter(contribution, places);
-            }
+    fn clear(&mut self) {
+        self.value.fill(0.0);
+        self.rhs.fill(0.0);
+        self.pull.fill(DVec3::ZERO);
+    }
+
+    fn add(&mut self, model: &Model, share: &Share, start: Start) {
+        pulp::Arch::new().dispatch(Adding { sum: self, model, share, start });
+    }
+
+    #[inline(always)]
+    fn add_each(&mut self, model: &Model, share: &Share, start: Start) {
+        for places in &share.segments {
+            self.scatter(&segment(&model.segments[places.term as usize], start), places);
+        }
+        for places in &share.bends {
+            self.scatter(&bend(&model.bends[places.term as usize], start), places);
+        }
+        for places in &share.wraps {
+            self.scatter(&wrap(&model.wraps[places.term as usize], start), places);
+        }
+        for places in &share.shears {
+            self.scatter(&shear(&model.shears[places.term as usize], start), places);
         }
     }
 
+    #[inline(always)]
     fn scatter<const K: usize, const N: usize>(&mut self, add: &Contribution<K, N>, places: &Places<K>) {
+        // Three unknowns of a position for each visit, and for some elements one of its yarn.
         let size = N / K;
         for b in 0..K {
-            self.pull[places.visits[b].index()] += add.pull[b];
-            for j in 0..size {
-                let Some(column) = places.unknown(b, j) else { continue };
-                self.rhs[(places.start[b] + column) as usize] += add.rhs[size * b + j];
-                for a in (0..K).filter(|a| places.start[*a] >= places.start[b]) {
-                    let first = self.matrix.place(places.start[b], places.block[a][b], 0, column);
-                    // In a diagonal block only the lower triangle is stored.
-                    let least = if places.start[a] == places.start[b] { column } else { 0 };
-                    for i in 0..size {
-                        let Some(row) = places.unknown(a, i).filter(|row| *row >= least) else { continue };
-                        self.matrix.value[first + row as usize] += add.matrix[size * a + i][size * b + j];
+            self.pull[places.slot[b] as usize] += add.pull[b];
+            let start = places.start[b] as usize;
+            let (slides, sliding) = (size == 4 && places.sliding[b] != FROZEN, places.sliding[b] as usize);
+            let rhs = &mut self.rhs[start..start + 3];
+            for j in 0..3 {
+                rhs[j] += add.rhs[size * b + j];
+            }
+            if slides {
+                self.rhs[start + sliding] += add.rhs[size * b + 3];
+            }
+            for a in 0..K {
+                let [row, column] = [places.start[a], places.start[b]];
+                if row < column {
+                    continue;
+                }
+                let yarn = (size == 4 && places.sliding[a] != FROZEN).then_some(places.sliding[a] as usize);
+                for j in 0..size {
+                    if j == 3 && !slides {
+                        continue;
+                    }
+                    let unknown = if j == 3 { sliding } else { j };
+                    let first = places.block[a][b] as usize + places.column(b, unknown);
+                    let entry = |i: usize| add.matrix[size * a + i][size * b + j];
+                    if row > column {
+                        let rows = &mut self.value[first..first + 3];
+                        for i in 0..3 {
+                            rows[i] += entry(i);
+                        }
+                    } else {
+                        // In a diagonal block only the lower triangle is stored.
+                        for i in j..3 {
+                            self.value[first + i] += entry(i);
+                        }
+                    }
+                    if let Some(yarn) = yarn.filter(|yarn| row > column || *yarn >= unknown) {
+                        self.value[first + yarn] += entry(3);
                     }
                 }
             }
@@ -201,6 +342,7 @@ impl Sum<'_> {
 }
 
 /// Mass, stretch, gravity, and contact length or parallel contact.
+#[inline(always)]
 fn segment(
     term: &SegmentTerm,
     Start { materials, state, gravity, air, omega, step: h }: Start,
@@ -237,6 +379,7 @@ fn segment(
     out
 }
 
+#[inline(always)]
 fn bend(term: &BendTerm, Start { materials, state, omega, step: h, .. }: Start) -> Contribution<3, 12> {
     let material = &materials[term.dye as usize];
     let q = term.stencil.coordinates(state);
@@ -251,6 +394,7 @@ fn bend(term: &BendTerm, Start { materials, state, omega, step: h, .. }: Start) 
     }
 }
 
+#[inline(always)]
 fn wrap(term: &WrapTerm, Start { materials, state, step: h, .. }: Start) -> Contribution<4, 12> {
     let material = &materials[term.dye as usize];
     let wrapped = term.wrap(material).expand(&term.stencil.points(state));
@@ -262,6 +406,7 @@ fn wrap(term: &WrapTerm, Start { materials, state, step: h, .. }: Start) -> Cont
     }
 }
 
+#[inline(always)]
 fn shear(term: &ShearTerm, Start { materials, state, step: h, .. }: Start) -> Contribution<4, 12> {
     let shear = term.shear(materials);
     let sheared = shear.expand(&term.stencil.points(state));
@@ -279,7 +424,9 @@ fn shear(term: &ShearTerm, Start { materials, state, step: h, .. }: Start) -> Co
 mod tests {
     use super::*;
     use crate::materials::Materials;
-    use crate::solver::gradients::Preconditioner;
+    use crate::solver::factor::Factor;
+    use crate::solver::gradients;
+    use crate::solver::pattern::Pattern;
     use std::sync::Arc;
     use stitch_mesh::dye::Dye;
     use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube, weave::Woven};
@@ -354,9 +501,11 @@ mod tests {
         };
         system.assemble(&model, start);
         let mut solution = vec![0.0; system.rhs.len()];
-        let mut cholesky = crate::solver::cholesky::Cholesky::new(&model, &system.matrix).unwrap();
-        cholesky.factorise(&system.matrix).unwrap();
-        cholesky.apply(&system.rhs, &mut solution);
+        let mut factor = Factor::new(Pattern::complete(&model, &system.matrix));
+        factor.factorise(&system.matrix).unwrap();
+        let nodes = &model.start[..model.net.nodes.len()];
+        let exactly = (20, 1e-13);
+        gradients::solve(&system.matrix, &mut factor, nodes, &system.rhs, &mut solution, exactly).unwrap();
         let matrix = &system.matrix;
         let mut product = vec![0.0; solution.len()];
         for j in 0..solution.len() {
@@ -373,6 +522,6 @@ mod tests {
             assert!((a - b).abs() < 1e-9 * largest);
         }
         system.matrix.add_diagonal(0, -1.0);
-        assert!(cholesky.factorise(&system.matrix).is_err(), "not positive definite");
+        assert!(factor.factorise(&system.matrix).is_err(), "not positive definite");
     }
 }

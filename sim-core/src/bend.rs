@@ -39,13 +39,16 @@ struct Measure {
     length: [f64; 2],
     /// Unit binormal; any normal of the yarn where it is straight.
     n: DVec3,
-    /// θ [rad].
+    /// θ [rad], its sine and its cosine.
     theta: f64,
+    sine: f64,
+    cosine: f64,
     /// Δu over both segments [m].
     du: f64,
 }
 
 impl Measure {
+    #[inline(always)]
     fn new(q: &[f64; 12]) -> Self {
         let (a, b) = (point(q, 4) - point(q, 0), point(q, 8) - point(q, 4));
         let length = [a.length().max(LEAST_LENGTH), b.length().max(LEAST_LENGTH)];
@@ -57,10 +60,13 @@ impl Measure {
         } else {
             d[0].try_normalize().unwrap_or(DVec3::X).any_orthonormal_vector()
         };
-        Self { d, length, n, theta: sine.atan2(d[0].dot(d[1])), du: (q[11] - q[3]).max(LEAST_LENGTH) }
+        let cosine = d[0].dot(d[1]);
+        let du = (q[11] - q[3]).max(LEAST_LENGTH);
+        Self { d, length, n, theta: sine.atan2(cosine), sine, cosine, du }
     }
 
     /// ∇θ over the three points [rad/m].
+    #[inline(always)]
     fn theta_gradient(&self) -> [DVec3; 3] {
         let by_a = -self.n.cross(self.d[0]) / self.length[0];
         let by_b = self.n.cross(self.d[1]) / self.length[1];
@@ -68,6 +74,7 @@ impl Measure {
     }
 
     /// t, the gradient of the relative tilt out of the plane of the bend [1/m].
+    #[inline(always)]
     fn tilt_gradient(&self) -> [DVec3; 3] {
         let (ta, tb) = (self.n / self.length[0], self.n / self.length[1]);
         [ta, -(ta + tb), tb]
@@ -81,6 +88,7 @@ impl Bend {
     }
 
     /// f, f', f'' at θ [N m²].
+    #[inline(always)]
     fn profile(&self, theta: f64) -> [f64; 3] {
         let jam = JAM_FACTOR * self.stiffness;
         let over = (theta - self.jam_angle).max(0.0);
@@ -93,15 +101,19 @@ impl Bend {
     }
 
     /// f'/Δu cot(θ/2)/2: stiffness against relative tilt [N m].
+    #[inline(always)]
     fn tilt_stiffness(&self, m: &Measure) -> f64 {
         let [_, slope, _] = self.profile(m.theta);
-        let half = (0.5 * m.theta).max(1e-9); // θ → 0: f' cot(θ/2)/2 → 2 k_b
-        let slope = if m.theta > 2e-9 { slope } else { 4e-9 * self.stiffness };
-        (slope / (2.0 * half.tan()) / m.du).max(0.0)
+        // cot(θ/2) = (1 + cos θ)/sin θ; θ → 0: f' cot(θ/2)/2 → 2 k_b.
+        let straight = m.sine < 1e-9 && m.cosine > 0.0;
+        let along =
+            if straight { 2.0 * self.stiffness } else { 0.5 * slope * (1.0 + m.cosine) / m.sine.max(1e-12) };
+        (along / m.du).max(0.0)
     }
 }
 
 /// The three vectors at the places of the three positions.
+#[inline(always)]
 fn spread(v: [DVec3; 3]) -> [f64; 12] {
     let mut out = [0.0; 12];
     for (k, v) in v.into_iter().enumerate() {
@@ -111,11 +123,13 @@ fn spread(v: [DVec3; 3]) -> [f64; 12] {
 }
 
 impl Element<12> for Bend {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 12]) -> f64 {
         let m = Measure::new(q);
         self.profile(m.theta)[0] / m.du
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 12]) -> Local<12> {
         let m = Measure::new(q);
         let [f, slope, curvature] = self.profile(m.theta);
@@ -141,6 +155,7 @@ impl Element<12> for Bend {
     }
 
     // A rotation ω tilts the two segments against each other by n·(ω × (d₂ − d₁)).
+    #[inline(always)]
     fn spin(&self, q: &[f64; 12], omega: DVec3) -> [f64; 12] {
         let m = Measure::new(q);
         let tilt = m.n.dot(omega.cross(m.d[1] - m.d[0]));

@@ -19,10 +19,12 @@ pub(crate) struct ContactLength {
 }
 
 impl Element<2> for ContactLength {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 2]) -> f64 {
         0.5 * self.stiffness * self.rest * ((q[1] - q[0]) / self.rest - 1.0).powi(2)
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 2]) -> Local<2> {
         let force = self.stiffness * ((q[1] - q[0]) / self.rest - 1.0);
         let mut local = Local { energy: self.energy(q), gradient: [-force, force], ..Local::zero() };

@@ -17,10 +17,12 @@ pub(crate) struct Gravity {
 }
 
 impl Element<8> for Gravity {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 8]) -> f64 {
         -(q[7] - q[3]) * self.weight.dot(point(q, 0) + point(q, 4)) / 2.0
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 8]) -> Local<8> {
         let mut local = Local { energy: self.energy(q), ..Local::zero() };
         let force = -0.5 * (q[7] - q[3]) * self.weight;

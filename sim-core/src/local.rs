@@ -30,11 +30,13 @@ pub(crate) struct Local<const N: usize> {
 
 impl<const N: usize> Local<N> {
     /// No energy, no force, no stiffness.
+    #[inline(always)]
     pub fn zero() -> Self {
         Self { energy: 0.0, gradient: [0.0; N], hessian: [[0.0; N]; N] }
     }
 
     /// Adds the rank-one stiffness k g gᵀ.
+    #[inline(always)]
     pub fn add_outer(&mut self, k: f64, g: &[f64; N]) {
         for i in 0..N {
             let kg = k * g[i];
@@ -55,17 +57,20 @@ pub(crate) trait Element<const N: usize> {
 
     /// K_t v for the velocity v of a rigid rotation `omega` [rad/s], where K_t is the part of the stiffness that is not
     /// zero on rigid rotations (see `rigid.rs`) [N/s].
+    #[inline(always)]
     fn spin(&self, _q: &[f64; N], _omega: DVec3) -> [f64; N] {
         [0.0; N]
     }
 }
 
 /// The vector at `q[at..at + 3]`.
+#[inline(always)]
 pub(crate) fn point<const N: usize>(q: &[f64; N], at: usize) -> DVec3 {
     DVec3::new(q[at], q[at + 1], q[at + 2])
 }
 
 /// Writes `v` to `q[at..at + 3]`.
+#[inline(always)]
 pub(crate) fn put<const N: usize>(q: &mut [f64; N], at: usize, v: DVec3) {
     q[at..at + 3].copy_from_slice(&v.to_array());
 }

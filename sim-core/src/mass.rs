@@ -17,6 +17,7 @@ use crate::local::{LEAST_LENGTH, point};
 pub(crate) const SLIDING_MASS: f64 = 1e-3;
 
 /// The mass matrix of a segment over (x₀, u₀, x₁, u₁) for `density` ρ [kg/m]; symmetric, positive definite [kg].
+#[inline(always)]
 pub(crate) fn mass(density: f64, q: &[f64; 8]) -> [[f64; 8]; 8] {
     let du = (q[7] - q[3]).max(LEAST_LENGTH);
     let w = ((point(q, 4) - point(q, 0)) / du).to_array();

@@ -80,6 +80,7 @@ impl<const K: usize> Stencil<K> {
     }
 
     /// Local vector of (x, u) for each visit.
+    #[inline(always)]
     pub fn coordinates<const N: usize>(&self, state: &YarnState) -> [f64; N] {
         self.gather(|k| {
             (state.position[self.nodes[k].index()], state.sliding[self.visits[k].index()] + self.turn[k])
@@ -87,6 +88,7 @@ impl<const K: usize> Stencil<K> {
     }
 
     /// Local vector of (v, u̇) for each visit.
+    #[inline(always)]
     pub fn velocities<const N: usize>(&self, state: &YarnState) -> [f64; N] {
         self.gather(|k| {
             (state.velocity[self.nodes[k].index()], state.sliding_velocity[self.visits[k].index()])
@@ -94,6 +96,7 @@ impl<const K: usize> Stencil<K> {
     }
 
     /// Local vector of the positions alone.
+    #[inline(always)]
     pub fn points<const N: usize>(&self, state: &YarnState) -> [f64; N] {
         let mut out = [0.0; N];
         for k in 0..K {
@@ -102,6 +105,7 @@ impl<const K: usize> Stencil<K> {
         out
     }
 
+    #[inline(always)]
     fn gather<const N: usize>(&self, of: impl Fn(usize) -> (DVec3, f64)) -> [f64; N] {
         let mut out = [0.0; N];
         for k in 0..K {
@@ -197,6 +201,8 @@ pub struct Model {
     pub(crate) shears: Vec<ShearTerm>,
     /// First unknown of each node, and the number of unknowns at the end, [node_count + 1].
     pub(crate) start: Vec<u32>,
+    /// Visits of the nodes before each, so place of its own when visits are sorted by node and stack, [node_count + 1].
+    pub(crate) slot: Vec<u32>,
     /// Unknown of each sliding coordinate, or [`FROZEN`], [visit_count].
     pub(crate) sliding: Vec<u32>,
     /// For each node the nodes from it on (itself first, ascending) that share an element with it.
@@ -213,6 +219,12 @@ impl Model {
         let wraps = wraps(&net, &segments);
         let shears = shears(&net, &dye_of);
         let (start, sliding) = layout(&net);
+        let slot = std::iter::once(0)
+            .chain(net.nodes.iter().scan(0, |slot, node| {
+                *slot += node.visits.len() as u32;
+                Some(*slot)
+            }))
+            .collect();
         let mut neighbours: Vec<Vec<u32>> = (0..net.nodes.len() as u32).map(|n| vec![n]).collect();
         let mut join = |nodes: &[NodeId]| {
             for a in nodes {
@@ -227,7 +239,7 @@ impl Model {
             row.sort_unstable();
             row.dedup();
         }
-        Ok(Self { net, dyes, dye_of, segments, bends, wraps, shears, start, sliding, neighbours })
+        Ok(Self { net, dyes, dye_of, segments, bends, wraps, shears, start, slot, sliding, neighbours })
     }
 
     /// Lets the bends that are `new` to the yarn start in `state` without jamming, however sharp they are: it has not been

@@ -23,10 +23,12 @@ pub(crate) struct Parallel {
 }
 
 impl Element<2> for Parallel {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 2]) -> f64 {
         0.5 * self.stiffness * (self.distance - (q[1] - q[0])).max(0.0).powi(2)
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 2]) -> Local<2> {
         let overlap = self.distance - (q[1] - q[0]);
         if overlap <= 0.0 {

@@ -1,5 +1,6 @@
 //! The simulator: a net, its state, and time going by.
 
+use crate::costs::Costs;
 use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
@@ -10,7 +11,7 @@ use crate::materials::Materials;
 use crate::model::{Model, NetError};
 use crate::noise::unit_hash;
 use crate::scene::{Scene, SceneError};
-use crate::solver::cholesky::SolveError;
+use crate::solver::{Method, Solver};
 use crate::step::{Rejection, Stepper, Stuck};
 use crate::surgery::slip::slipped;
 use crate::surgery::{self, Operation, Surgery, SurgeryError};
@@ -73,9 +74,6 @@ pub enum SimError {
     /// The operation.
     #[error(transparent)]
     Surgery(#[from] SurgeryError),
-    /// The solver could not be set up.
-    #[error(transparent)]
-    Solver(#[from] SolveError),
     /// The GPU.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -144,6 +142,8 @@ pub struct Simulator {
     steps: u64,
     rejected: u64,
     surgery: Surgery,
+    /// None where the faster one is chosen.
+    method: Option<Method>,
 }
 
 impl Simulator {
@@ -165,7 +165,7 @@ impl Simulator {
             let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
             *x += DVec3::new(noise(0), noise(1), noise(2));
         }
-        let stepper = Stepper::new(model, &materials)?;
+        let stepper = Stepper::new(model, &materials, None);
         let anchors = Anchors::at(&stepper.stacks, &state.sliding);
         let step = scene.time_step;
         Ok(Self {
@@ -180,6 +180,7 @@ impl Simulator {
             steps: 0,
             rejected: 0,
             surgery: Surgery::default(),
+            method: None,
         })
     }
 
@@ -223,15 +224,8 @@ impl Simulator {
     /// Changes the net while it is simulated. Pins on nodes that go are dropped. Nothing has changed after an error.
     pub fn operate(&mut self, operation: Operation) -> Result<(), SimError> {
         let done = surgery::operate(self.net(), self.state(), &operation)?;
-        let mut model = Model::new(Arc::new(done.net))?;
-        check_state(&model, &done.state)?;
-        let before = self.net();
-        model.ease(&done.state, |visits| {
-            let was = visits.map(|v| done.was[v.index()].map(|(old, _)| old));
-            let followed = |a: Option<VisitId>, b| a.is_some() && a.and_then(|a| before.next(a)) == b;
-            !(followed(was[0], was[1]) && followed(was[1], was[2]))
-        });
-        let stepper = Stepper::new(model, &self.materials)?;
+        let model = model_after(self.net(), Arc::new(done.net), &done.state, &done.was)?;
+        let stepper = Stepper::new(model, &self.materials, self.method);
         let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
         self.surgery.add(operation, self.state().taken_in);
         self.stepper = stepper;
@@ -353,6 +347,23 @@ impl Simulator {
         self.stepper.model.kinetic_energy(&self.materials, self.state())
     }
 
+    /// Solves the systems of its steps by `method`, whatever the size of the fabric; by the faster one again with none.
+    pub fn set_method(&mut self, method: Option<Method>) {
+        let Stepper { model, system, solver, .. } = &mut self.stepper;
+        *solver = Solver::new(model, &system.matrix, method);
+        self.method = method;
+    }
+
+    /// How the systems of its steps are solved.
+    pub fn method(&self) -> Method {
+        self.stepper.solver.method()
+    }
+
+    /// What its steps have cost since it began or yarn was last cut.
+    pub fn costs(&self) -> Costs {
+        self.stepper.costs
+    }
+
     /// What there is to report of the simulation so far. Looks for the closest yarns, which takes about as long as a step.
     pub fn facts(&self) -> Facts {
         Facts {
@@ -370,6 +381,23 @@ impl Simulator {
             )
         }
     }
+}
+
+/// The elements of a net that has been made of another, whose new bends are eased; `was` tells which visit each one was.
+pub(crate) fn model_after(
+    before: &YarnNet,
+    net: Arc<YarnNet>,
+    state: &YarnState,
+    was: &[Option<(VisitId, f64)>],
+) -> Result<Model, SimError> {
+    let mut model = Model::new(net)?;
+    check_state(&model, state)?;
+    model.ease(state, |visits| {
+        let was = visits.map(|v| was[v.index()].map(|(old, _)| old));
+        let followed = |a: Option<VisitId>, b| a.is_some() && a.and_then(|a| before.next(a)) == b;
+        !(followed(was[0], was[1]) && followed(was[1], was[2]))
+    });
+    Ok(model)
 }
 
 pub(crate) fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {

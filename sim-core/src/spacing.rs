@@ -27,6 +27,7 @@ impl Spacing {
 }
 
 impl Element<2> for Spacing {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 2]) -> f64 {
         match self {
             Self::Contact(element) => element.energy(q),
@@ -34,6 +35,7 @@ impl Element<2> for Spacing {
         }
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 2]) -> Local<2> {
         match self {
             Self::Contact(element) => element.expand(q),

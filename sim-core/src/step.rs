@@ -11,6 +11,7 @@
 //! shape, if ever.
 
 use crate::assembly::{Start, System};
+use crate::costs::{Costs, Stage, Watch};
 use crate::curves::normal;
 use crate::friction::{Anchors, FrictionSpring, PerYarn, Stack};
 use crate::layers::{LayerContact, Layers, Press};
@@ -20,9 +21,8 @@ use crate::materials::{Materials, Touch};
 use crate::model::{FROZEN, Model, SegmentTerm};
 use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
-use crate::solver::Solver;
-use crate::solver::cholesky::SolveError;
 use crate::solver::tail::Link;
+use crate::solver::{Method, SolveError, Solver};
 use crate::surroundings::{BODY_STIFFNESS, body_forces};
 use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
@@ -67,6 +67,8 @@ pub(crate) struct Stepper {
     pub stacks: Vec<Stack>,
     /// Force of each body on the fabric in the last step that went well [N].
     pub body_forces: Vec<DVec3>,
+    /// What all steps have cost.
+    pub costs: Costs,
 }
 
 /// A state of the yarn with all that the next step needs of the last.
@@ -78,9 +80,9 @@ pub(crate) struct Stuck {
 }
 
 impl Stepper {
-    pub fn new(model: Model, materials: &Materials) -> Result<Self, SolveError> {
+    pub fn new(model: Model, materials: &Materials, method: Option<Method>) -> Self {
         let system = System::new(&model);
-        let solver = Solver::new(&model, &system.matrix)?;
+        let solver = Solver::new(&model, &system.matrix, method);
         let layers = Layers::new(&model.net);
         let stacks = Stack::all(&model.net);
         let mut stepper = Self {
@@ -94,9 +96,10 @@ impl Stepper {
             layers,
             stacks,
             body_forces: Vec::new(),
+            costs: Costs::default(),
         };
         stepper.set_materials(materials);
-        Ok(stepper)
+        stepper
     }
 
     pub fn set_materials(&mut self, materials: &Materials) {
@@ -110,17 +113,25 @@ impl Stepper {
 
     /// The state after a step of `h` from `now`, `time_s` after the scene has begun [s].
     pub fn step(&mut self, now: &Stuck, scene: &Scene, time_s: f64, h: f64) -> Result<Stuck, Rejection> {
+        let mut watch = Watch::start();
         let state = &now.state;
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
         let Scene { gravity, air, .. } = *scene;
         let start = Start { materials: &self.materials, state, gravity, air, omega: rotation.omega, step: h };
+        watch.lap(&mut self.costs, Stage::Rest);
         self.system.assemble(&self.model, start);
+        watch.lap(&mut self.costs, Stage::Assembly);
         let anchors = self.add_friction(now, h);
+        watch.lap(&mut self.costs, Stage::Friction);
         self.add_layers(state, scene, h);
         let touching = self.add_bodies(state, scene, time_s, h);
         let held = self.add_pins(state, scene, time_s + h, h);
+        watch.lap(&mut self.costs, Stage::Contacts);
         let mut solution = self.rates(state);
-        self.solver.solve(&self.model, &self.system.matrix, &self.system.rhs, &mut solution)?;
+        self.costs.attempts += 1;
+        let System { matrix, rhs, .. } = &self.system;
+        self.solver.solve(&self.model, matrix, rhs, &mut solution, &mut self.costs)?;
+        let mut watch = Watch::start();
         let (mut velocity, rate) = self.split(&solution);
         if touching.is_empty() && held == 0 && air == 0.0 {
             let kept = Rotation { omega: rotation.omega / (1.0 + h * self.mean_mass_damping()), ..rotation };
@@ -129,6 +140,7 @@ impl Stepper {
         let next = advanced(state, velocity, rate, h);
         self.judge(state, &next)?;
         self.body_forces = body_forces(scene, &touching, &next.velocity, h);
+        watch.lap(&mut self.costs, Stage::Rest);
         Ok(Stuck { state: next, anchors })
     }
 
@@ -139,7 +151,8 @@ impl Stepper {
         let Self { model, system, materials, stacks, .. } = self;
         let material = |v: VisitId| &materials[model.dye_of[v.index()] as usize];
         for stack in stacks {
-            let pull: PerYarn<DVec3> = stack.visits.iter().map(|v| system.pull[v.index()]).collect();
+            let slots = model.slot[stack.node] as usize..model.slot[stack.node + 1] as usize;
+            let pull: PerYarn<DVec3> = system.pull[slots].iter().copied().collect();
             let many = stack.visits.len() > 2;
             let back = if many { -normal(&model.net, &now.state, stack.node) } else { DVec3::ZERO };
             let mut limits: PerYarn<f64> = SmallVec::from_elem(0.0, stack.visits.len());

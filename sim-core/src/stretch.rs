@@ -30,23 +30,27 @@ pub(crate) struct Stretch {
 
 impl Stretch {
     /// (r, l, Δu).
+    #[inline(always)]
     fn measure(&self, q: &[f64; 8]) -> (DVec3, f64, f64) {
         let r = point(q, 4) - point(q, 0);
         (r, r.length().hypot(self.climb).max(LEAST_LENGTH), (q[7] - q[3]).max(LEAST_LENGTH))
     }
 
     /// k_s (1/Δu − 1/l)₊: stiffness of a taut segment across its own direction [N/m].
+    #[inline(always)]
     fn across(&self, l: f64, du: f64) -> f64 {
         (self.stiffness * (1.0 / du - 1.0 / l)).max(0.0)
     }
 }
 
 impl Element<8> for Stretch {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 8]) -> f64 {
         let (_, l, du) = self.measure(q);
         0.5 * self.stiffness * (l - du).powi(2) / du
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 8]) -> Local<8> {
         let (r, l, du) = self.measure(q);
         let d = r / l;
@@ -83,6 +87,7 @@ impl Element<8> for Stretch {
     }
 
     // A rotation moves the second end against the first by ω × r, which is all across r and ∇l.
+    #[inline(always)]
     fn spin(&self, q: &[f64; 8], omega: DVec3) -> [f64; 8] {
         let (r, l, du) = self.measure(q);
         let force = self.across(l, du) * omega.cross(r);

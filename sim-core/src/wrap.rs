@@ -51,6 +51,7 @@ struct Wing {
 }
 
 impl Wing {
+    #[inline(always)]
     fn new(outer: DVec3, x0: DVec3, e: DVec3, length: f64, fade: f64) -> Self {
         let r = outer - x0;
         let across = r - r.dot(e) * e;
@@ -80,6 +81,7 @@ struct Hinge {
 
 impl Hinge {
     /// Vectors over (x₄, x₀, x₁, x₃) that are `by_a` on x₄ and `by_b` on x₃, and on the axis what keeps it in balance.
+    #[inline(always)]
     fn spread(&self, by_a: DVec3, by_b: DVec3) -> [f64; 12] {
         let mut out = [0.0; 12];
         put(&mut out, 0, by_a);
@@ -91,6 +93,7 @@ impl Hinge {
 }
 
 impl Wrap {
+    #[inline(always)]
     fn hinge(&self, q: &[f64; 12]) -> Hinge {
         let [x4, x0, x1, x3] = [0, 3, 6, 9].map(|at| point(q, at));
         let length = x0.distance(x1).max(LEAST_LENGTH);
@@ -107,11 +110,13 @@ impl Wrap {
 }
 
 impl Element<12> for Wrap {
+    #[inline(always)]
     fn energy(&self, q: &[f64; 12]) -> f64 {
         let Hinge { a, b, cos, .. } = self.hinge(q);
         self.stiffness * (1.0 - a.s * b.s * cos)
     }
 
+    #[inline(always)]
     fn expand(&self, q: &[f64; 12]) -> Local<12> {
         let hinge = self.hinge(q);
         let Hinge { a, b, n_a, n_b, cos, sin } = &hinge;

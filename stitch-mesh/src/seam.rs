@@ -2,6 +2,9 @@
 //!
 //! The two sides need not have the same number of stitches: the sewing yarn goes to and fro and catches each edge in its
 //! turn, in proportion. The sides may be of any kind: row ends, cast-on or bind-off.
+//!
+//! A seam of a garment is known before its stitches are: by corners of the input mesh, which keep their numbers when it is
+//! tessellated. [`Seam::between`] follows the border from one to the next.
 
 use crate::ids::VertexId;
 use crate::mesh::PolygonMesh;
@@ -34,6 +37,23 @@ pub enum SeamError {
 }
 
 impl Seam {
+    /// The seam along two sides of which only some vertices are named, at least the ends: from each to the next it follows
+    /// the border of `mesh`, the shorter way round where there are two.
+    ///
+    /// # Errors
+    /// [`SeamError::NoBorder`] where two of them do not lie on one border.
+    pub fn between(mesh: &PolygonMesh, a: &[VertexId], b: &[VertexId]) -> Result<Self, SeamError> {
+        let side = |named: &[VertexId]| {
+            let mut vertices: Vec<VertexId> = named.first().copied().into_iter().collect();
+            for pair in named.windows(2) {
+                let error = SeamError::NoBorder(pair[0], pair[1]);
+                vertices.extend(along_border(mesh, pair[0], pair[1]).ok_or(error)?);
+            }
+            Ok(vertices)
+        };
+        Ok(Self { a: side(a)?, b: side(b)? })
+    }
+
     fn edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
         self.a.windows(2).chain(self.b.windows(2)).map(|w| sorted([w[0], w[1]]))
     }
@@ -62,6 +82,35 @@ impl Seam {
         }
         Ok(())
     }
+}
+
+/// The vertices after `from` on a border as far as `to`, the shorter way round.
+fn along_border(mesh: &PolygonMesh, from: VertexId, to: VertexId) -> Option<Vec<VertexId>> {
+    if from.index().max(to.index()) >= mesh.vertex_count() {
+        return None;
+    }
+    let walk = |from: VertexId, to: VertexId| {
+        let start = mesh.outgoing(from).find(|h| mesh.twin(*h).is_none());
+        let mut vertices = Vec::new();
+        let mut at = start;
+        while let Some(h) = at {
+            vertices.push(mesh.tip(h));
+            if mesh.tip(h) == to {
+                return Some(vertices);
+            }
+            at = mesh.next_on_border(h).filter(|next| Some(*next) != start);
+        }
+        None
+    };
+    let onwards = walk(from, to)?;
+    let mut back = walk(to, from)?;
+    if onwards.len() <= back.len() {
+        return Some(onwards);
+    }
+    back.pop();
+    back.reverse();
+    back.push(to);
+    Some(back)
 }
 
 /// The ends of an edge, the smaller first.
@@ -94,5 +143,28 @@ impl StitchMesh {
         let before = seams.len();
         seams.retain(|s| !edges.iter().any(|[a, b]| s.covers(*a, *b)));
         before - seams.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edge_counts::StitchSize;
+    use crate::pieces::rectangle;
+
+    #[test]
+    fn a_seam_between_corners_follows_the_border() {
+        // Vertices of 4 × 3 stitches: 0–4 below, 15–19 above.
+        let piece = rectangle(4, 3, StitchSize::of_width(3e-3)).unwrap();
+        let seam = |a: &[u32], b: &[u32]| -> Result<_, SeamError> {
+            let vertices = |list: &[u32]| list.iter().copied().map(VertexId).collect::<Vec<_>>();
+            let seam = Seam::between(piece.mesh(), &vertices(a), &vertices(b))?;
+            let numbers = |side: Vec<VertexId>| side.into_iter().map(|v| v.0).collect::<Vec<_>>();
+            Ok((numbers(seam.a), numbers(seam.b)))
+        };
+        assert_eq!(seam(&[0, 15], &[4, 19]), Ok((vec![0, 5, 10, 15], vec![4, 9, 14, 19])));
+        assert_eq!(seam(&[4, 0], &[19, 17, 15]), Ok((vec![4, 3, 2, 1, 0], vec![19, 18, 17, 16, 15])));
+        assert_eq!(seam(&[0, 6], &[4, 19]), Err(SeamError::NoBorder(VertexId(0), VertexId(6))));
+        assert_eq!(seam(&[0, 99], &[4, 19]), Err(SeamError::NoBorder(VertexId(0), VertexId(99))));
     }
 }

@@ -18,7 +18,8 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 /// The meshes that ship with the program.
-pub const ASSETS: [&str; 5] = ["swatch", "cowl", "poncho", "hat", "pullover"];
+pub const ASSETS: [&str; 8] =
+    ["swatch", "cowl", "poncho", "hat", "pullover", "slipover", "sweater", "t-shirt"];
 
 /// A session that makes a cabled, ribbed and shaped panel of the swatch without labels: a script for `purlwise edit`, and
 /// what a person does in the window.

@@ -178,3 +178,16 @@ fn what_cannot_be_done_is_said() {
     window.key(Modifiers::COMMAND, Key::Z);
     window.harness.get_by_label("Undo: there is nothing to undo");
 }
+
+#[test]
+fn what_comes_with_the_program_is_begun_from_a_menu() {
+    let mut window = Window::new(knitted());
+    window.press("New");
+    window.keep("bundled");
+    window.press("cowl");
+    let project = window.editor().project();
+    assert_eq!(project.labelled.mesh().face_count(), 80);
+    assert!(project.fabric().unwrap().stitches.rows().iter().all(|r| r.closed), "knitted, not only read");
+    let path = window.harness.get_by_label("Path").accesskit_node().value();
+    assert_eq!(path.as_deref(), Some("cowl.purl"), "where it will be saved");
+}

@@ -2,7 +2,6 @@
 
 use super::{Output, picture, report, simulate};
 use crate::bundled;
-use crate::command::Command;
 use crate::drawing::Stage;
 use crate::files;
 use crate::inspect::inspect;
@@ -24,9 +23,10 @@ pub fn run(out: &Path, output: Output) -> Result<()> {
     let draw = |project: &Project, stage, name: &str| {
         picture(&gpu, project, stage, NamedView::ThreeQuarter, SIZE, &out.join(name))
     };
-    draw(&bundled::mesh()?, Stage::Mesh, "mesh.png")?;
-    draw(&Command::Autolabel.apply(&bundled::mesh()?)?, Stage::Labels, "labels.png")?;
     let project = bundled::pullover()?;
+    let mesh = Project::new(project.labelled.mesh().clone(), project.size);
+    draw(&mesh, Stage::Mesh, "mesh.png")?;
+    draw(&project, Stage::Labels, "labels.png")?;
     draw(&project, Stage::Stitches, "stitches.png")?;
     draw(&project, Stage::Yarn, "yarn-initial.png")?;
     let scene = project.scene.clone();

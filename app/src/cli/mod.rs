@@ -15,7 +15,7 @@ use crate::drawing::{Stage, drawing};
 use crate::inspect::inspect;
 use crate::lab::Experiment;
 use crate::open::open_any;
-use crate::project::{DEFAULT_STITCH_WIDTH, Project};
+use crate::project::Project;
 use crate::{export, files, library, sheet};
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
@@ -49,12 +49,13 @@ enum Verb {
     },
     /// Makes a project from a mesh
     New {
+        /// A file (.obj), or a mesh that comes with the program: swatch, cowl, poncho, hat, pullover, slipover, sweater, t-shirt
         mesh: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// Width of a stitch in millimetres
-        #[arg(long, value_name = "MM", default_value_t = DEFAULT_STITCH_WIDTH * 1e3)]
-        stitch_size: f64,
+        /// Width of a stitch in millimetres; 10, or as the mesh that comes with the program is made for
+        #[arg(long, value_name = "MM")]
+        stitch_size: Option<f64>,
         /// Unit of the mesh
         #[arg(long, value_enum, default_value = "m")]
         unit: UnitName,
@@ -92,7 +93,7 @@ enum Verb {
         project: PathBuf,
         #[arg(short)]
         output: PathBuf,
-        /// free, board, ground, sphere, form, hang, pull, walk, or a file (docs/scenes.md); the project's own scene if absent
+        /// free, board, ground, sphere, form, bust, hang, pull, walk, dance, or a file (docs/scenes.md); the project's own scene if absent
         #[arg(long)]
         scene: Option<String>,
         /// Simulated time
@@ -300,9 +301,9 @@ fn run(arguments: Arguments) -> Result<()> {
             project.save(&output)?;
             report(&project, print)
         }
-        Verb::Simulate { project, output, scene, seconds, solver: Solver::Cpu, frames, print } => {
+        Verb::Simulate { project, output, scene, seconds, solver, frames, print } => {
             let opened = Project::open(&project)?;
-            let project = simulate::simulate(opened, scene.as_deref(), seconds, frames.as_deref())
+            let project = simulate::simulate(opened, scene.as_deref(), seconds, solver, frames.as_deref())
                 .with_context(|| project.display().to_string())?;
             project.save(&output)?;
             report(&project, print)

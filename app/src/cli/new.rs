@@ -1,20 +1,28 @@
 //! The verb `new`, and scripts.
 
+use crate::bundled;
 use crate::command::{Command, read_script};
 use crate::document::Document;
 use crate::files;
-use crate::project::Project;
+use crate::project::{DEFAULT_STITCH_WIDTH, Project};
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::obj::Unit;
 
-/// A project from a mesh: labelled, and tessellated where the labels allow it.
-pub fn new(mesh: &Path, unit: Unit, stitch_mm: f64, script: Option<&Path>) -> Result<Project> {
-    if !(0.1..=1000.0).contains(&stitch_mm) {
-        bail!("a stitch of {stitch_mm} mm cannot be knitted: --stitch-size goes from 0.1 to 1000");
+/// A project from a mesh, in a file or bundled: labelled, and tessellated where the labels allow it.
+pub fn new(mesh: &Path, unit: Unit, stitch_mm: Option<f64>, script: Option<&Path>) -> Result<Project> {
+    if let Some(mm) = stitch_mm.filter(|mm| !(0.1..=1000.0).contains(mm)) {
+        bail!("a stitch of {mm} mm cannot be knitted: --stitch-size goes from 0.1 to 1000");
     }
-    let project = Project::from_obj(mesh, unit, StitchSize::of_width(stitch_mm * 1e-3))?;
+    let bundled = mesh.to_str().and_then(bundled::find).filter(|_| !mesh.exists());
+    let usual = bundled.map_or(DEFAULT_STITCH_WIDTH, |b| b.width);
+    let width = stitch_mm.map_or(usual, |mm| mm * 1e-3);
+    let project = match bundled {
+        Some(bundled) if script.is_none() => return bundled.knitted(width),
+        Some(bundled) => bundled.mesh(width)?,
+        None => Project::from_obj(mesh, unit, StitchSize::of_width(width))?,
+    };
     let project = match script {
         Some(script) => {
             let text = String::from_utf8(files::read(script)?)
@@ -27,7 +35,7 @@ pub fn new(mesh: &Path, unit: Unit, stitch_mm: f64, script: Option<&Path>) -> Re
         return Ok(project);
     }
     match project.labelled.problems().len() {
-        0 => Command::Tessellate { width_mm: Some(stitch_mm) }.apply(&project),
+        0 => Command::Tessellate { width_mm: Some(1e3 * width) }.apply(&project),
         _ => Ok(project), // the report says what could not be decided
     }
 }

@@ -139,7 +139,8 @@ pub enum Command {
         /// Whether they are a spiral.
         spiral: bool,
     },
-    /// Sews two stretches of border together, first vertex to first vertex.
+    /// Sews two stretches of border together, first vertex to first vertex. Between two vertices that are no neighbours the
+    /// seam follows the border, the shorter way; so corners of the input mesh will do.
     Sew {
         /// Vertices along one.
         a: Vec<u32>,

@@ -124,7 +124,10 @@ pub(super) fn set_spiral(project: &mut Project, spiral: bool) -> Result<()> {
 }
 
 pub(super) fn sew(project: &mut Project, a: &[u32], b: &[u32]) -> Result<()> {
-    restitch(project, |stitches| Ok(stitches.sew(Seam { a: vertices(a), b: vertices(b) })?))
+    restitch(project, |stitches| {
+        let seam = Seam::between(stitches.mesh(), &vertices(a), &vertices(b))?;
+        Ok(stitches.sew(seam)?)
+    })
 }
 
 pub(super) fn unsew(project: &mut Project, edges: &[[u32; 2]]) -> Result<()> {

@@ -28,7 +28,8 @@ pub fn run(bench: &mut Bench) -> Result<()> {
     let slower = STITCH_MM / 3.0;
     bench.plan(3.0 * slower * TIME);
     let tessellate = Command::Tessellate { width_mm: Some(STITCH_MM) };
-    let garment = tessellate.apply(&Command::Autolabel.apply(&bundled::mesh()?)?)?;
+    let mesh = Project { fabric: None, counts: None, ..bundled::pullover()? };
+    let garment = tessellate.apply(&mesh)?;
     let stitches = (*garment.fabric()?.stitches).clone();
     let sample = crate::written::sample(STOCKINETTE, crate::command::mean_size(&stitches))?;
     let mut told = 0.0;

@@ -16,22 +16,26 @@ use stitch_mesh::stitch_mesh::StitchMesh;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Scenes by name, and what they are.
-pub const NAMED: [(&str, &str); 8] = [
+pub const NAMED: [(&str, &str); 10] = [
     ("free", "no gravity, nothing around"),
     ("board", "pinned out by its borders, as a knitter blocks it"),
     ("ground", "falling on the ground"),
     ("sphere", "falling on a sphere over the ground"),
     ("form", "worn by a dress form (made for the bundled pullover)"),
+    ("bust", "worn by a bust with a neck (made for the bundled slipover)"),
     ("hang", "held by its last row"),
     ("pull", "its first and last rows drawn apart"),
     ("walk", "worn by a mannequin who walks (made for the bundled cowl)"),
+    ("dance", "worn by a mannequin who dances (made for the bundled sweater and t-shirt)"),
 ];
 
 /// Those of them that are files, as anybody could write them.
-const FILES: [(&str, &str); 3] = [
+const FILES: [(&str, &str); 5] = [
+    ("bust", include_str!("../../../assets/scenes/bust.json")),
     ("hang", include_str!("../../../assets/scenes/hang.json")),
     ("pull", include_str!("../../../assets/scenes/pull.json")),
     ("walk", include_str!("../../../assets/scenes/walk.json")),
+    ("dance", include_str!("../../../assets/scenes/dance.json")),
 ];
 
 /// The box around yarn [m].

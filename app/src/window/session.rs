@@ -8,6 +8,7 @@
 //! relaxation, ends with its next step; other work runs out with nobody waiting for it.
 
 use super::view::{Survey, View};
+use crate::bundled::Bundled;
 use crate::charts;
 use crate::command::{Command, write_script};
 use crate::document::Document;
@@ -46,6 +47,8 @@ pub enum Request {
     GoTo(usize),
     /// Open a project or mesh in place of this one.
     Open(PathBuf),
+    /// Begin anew with what comes with the program.
+    Begin(&'static Bundled),
     /// Take the scene of a name or a file.
     Scene(String),
     /// Save the project.
@@ -67,6 +70,7 @@ impl Request {
             Self::Redo => "Redo".into(),
             Self::GoTo(_) => "Go through the history".into(),
             Self::Open(path) => format!("Open {}", path.display()),
+            Self::Begin(bundled) => format!("Knit {}", bundled.name),
             Self::Scene(name) => format!("Scene {name}"),
             Self::Save(path)
             | Self::SaveScript(path)
@@ -260,6 +264,11 @@ impl Worker {
                 let message = format!("Opened {}", path.display());
                 self.path = Some(path);
                 Ok(message)
+            }
+            Request::Begin(bundled) => {
+                self.document = Document::new(self.unless_cancelled(|| bundled.knitted(bundled.width))?);
+                self.path = Some(PathBuf::from(bundled.name).with_extension("purl"));
+                Ok(format!("Begun: {}", bundled.name))
             }
             Request::Scene(name) => {
                 let project = self.document.project().clone();

@@ -44,6 +44,7 @@ pub(crate) const SOURCES: &[Source] = &[
     ("advance", include_str!("kernels/advance.wgsl"), &["advance"]),
     ("judge", include_str!("kernels/judge.wgsl"), &["judge"]),
     ("commit", include_str!("kernels/commit.wgsl"), &["commit"]),
+    ("points", include_str!("kernels/points.wgsl"), &["lay_points", "lay_middles"]),
 ];
 
 /// A binding of a kernel file.

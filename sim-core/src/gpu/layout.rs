@@ -57,6 +57,8 @@ records! {
         cell_count: u32,
         /// Places for contacts of layers.
         contact_capacity: u32,
+        /// Stitch contacts.
+        joint_count: u32,
     }
     /// The part of the arrays that one dispatch works on.
     Part {
@@ -176,6 +178,17 @@ records! {
         dof: u32,
         size: u32,
         front: u32,
+    }
+    /// The middle of a stitch contact, where yarns pass each other.
+    Joint {
+        node_0: u32, node_1: u32,
+        /// The colour of the new yarn, and those of the old ones in the list of them.
+        dye: u32,
+        old: u32, old_end: u32,
+        /// Its first control point.
+        point: u32,
+        /// Handedness, turned round where the new yarn lies in front.
+        side: f32,
     }
     /// A visit in a stack.
     Stacked {

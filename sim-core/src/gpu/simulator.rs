@@ -9,26 +9,33 @@ use super::layout::{
 use super::system::{System, Verdict};
 use super::tables::Tables;
 use crate::body::Body;
+use crate::curves::string_together;
+use crate::facts::{self, Facts};
+use crate::friction::{Anchors, Stack};
 use crate::material::Material;
 use crate::materials::Materials;
 use crate::model::{FROZEN, Model, SegmentTerm};
 use crate::noise::unit_hash;
 use crate::scene::Scene;
-use crate::simulator::{GROWTH, MOST_HALVINGS, NOISE, SimError, StepReport, check_state};
-use crate::solver::cholesky::SolveError;
-use crate::solver::gradients::TOLERANCE;
+use crate::simulator::{GROWTH, MOST_HALVINGS, NOISE, SimError, StepReport, check_state, model_after};
+use crate::solver::{SolveError, TOLERANCE};
 use crate::step::Rejection;
+use crate::surgery::{self, Operation, Surgery, slip};
 use crate::take_in::{TIME, TakeIn};
 use glam::{DQuat, DVec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
-use stitch_mesh::yarn_net::{YarnNet, YarnState};
+use stitch_mesh::yarn_curves::YarnCurves;
+use stitch_mesh::yarn_net::{NodeKind, YarnNet, YarnState};
 
 /// Iterations of conjugate gradients recorded beyond those that the last step took, so that most steps are one submission.
 const SPARE_ITERATIONS: u32 = 4;
 
 /// Iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 300;
+
+/// Simulated time between two states that are read back in any case, to go on from should the GPU be lost [s].
+const KEEP: f64 = 0.05;
 
 /// A simulation on the GPU.
 pub struct GpuSimulator {
@@ -49,9 +56,12 @@ pub struct GpuSimulator {
     steps: u64,
     rejected: u64,
     iterations: u32,
+    surgery: Surgery,
     /// The state as last read back.
     state: YarnState,
     is_read: bool,
+    /// Simulated time when it was [s].
+    read_at: f64,
 }
 
 impl GpuSimulator {
@@ -86,13 +96,12 @@ impl GpuSimulator {
         let take_in = TakeIn::new(net);
         take_in.shorten_turns(&mut model, state.taken_in);
         check_state(&model, &state)?;
-        let model = Model::new(Arc::clone(net))?;
         for (i, x) in state.position.iter_mut().enumerate() {
             let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
             *x += DVec3::new(noise(0), noise(1), noise(2));
         }
         let origin = state.position.iter().sum::<DVec3>() / state.position.len().max(1) as f64;
-        let tables = Tables::new(&model, &materials, &take_in, origin, most)?;
+        let tables = Tables::new(&Model::new(Arc::clone(net))?, &materials, &take_in, origin, most)?;
         let system = System::new(gpu, kernels, tables, &model.resolve(&materials), net.visits.len())?;
         let mut simulator = Self {
             system,
@@ -110,10 +119,13 @@ impl GpuSimulator {
             steps: 0,
             rejected: 0,
             iterations: 16,
+            surgery: Surgery::default(),
             state,
             is_read: true,
+            read_at: 0.0,
         };
-        simulator.upload_state();
+        let anchors = Anchors::at(&Stack::all(net), &simulator.state.sliding);
+        simulator.upload_state(&anchors);
         simulator.set_scene(scene)?;
         Ok(simulator)
     }
@@ -125,7 +137,9 @@ impl GpuSimulator {
     /// No time step is small enough, or the GPU fails.
     pub fn step(&mut self) -> Result<StepReport, SimError> {
         let smallest = self.scene.time_step * 0.5f64.powi(MOST_HALVINGS);
-        self.taken_in += (self.step / TIME).min(1.0 - self.taken_in).max(0.0);
+        let part = (self.step / TIME).min(1.0 - self.taken_in).max(0.0);
+        self.taken_in += part;
+        self.take_in.shorten_turns(&mut self.model, part);
         let mut rejected = 0;
         loop {
             match self.attempt()? {
@@ -135,6 +149,9 @@ impl GpuSimulator {
                     self.scene_time += self.step;
                     self.steps += 1;
                     self.step = self.scene.time_step.min(GROWTH * self.step);
+                    while let Some(operation) = self.slipped()? {
+                        self.operate(operation)?;
+                    }
                     return Ok(report);
                 }
                 Some(cause) => {
@@ -150,6 +167,61 @@ impl GpuSimulator {
                 }
             }
         }
+    }
+
+    /// What has slipped out in the state now; only yarn that is loose somewhere, or a loop that nothing holds, can.
+    fn slipped(&mut self) -> Result<Option<Operation>, GpuError> {
+        let net = Arc::clone(&self.model.net);
+        let may = net.nodes.iter().any(|n| n.kind == NodeKind::Loose) || slip::unheld(&net).next().is_some();
+        if !may {
+            return Ok(None);
+        }
+        self.state()?;
+        Ok(slip::slipped(&net, &self.state, &self.materials))
+    }
+
+    /// Changes the net while it is simulated, as on the CPU, and puts the new one on the device. Nothing has changed after an
+    /// error.
+    ///
+    /// # Errors
+    /// The net has no such yarn, or the GPU fails.
+    pub fn operate(&mut self, operation: Operation) -> Result<(), SimError> {
+        let before = self.state()?.clone();
+        let anchors = self.anchors()?;
+        let done = surgery::operate(&self.model.net, &before, &operation)?;
+        let net = Arc::new(done.net);
+        let model = model_after(&self.model.net, Arc::clone(&net), &done.state, &done.was)?;
+        let take_in = TakeIn::default();
+        let most = LIMITS.max_storage_buffer_binding_size / 4;
+        let tables = Tables::new(&model, &self.materials, &take_in, self.origin, most)?;
+        let gpu = self.system.gpu.clone();
+        let kernels = gpu.kernels()?;
+        self.system = System::new(&gpu, kernels, tables, &model.resolve(&self.materials), net.visits.len())?;
+        self.surgery.add(operation, self.taken_in);
+        (self.model, self.take_in, self.state) = (model, take_in, done.state);
+        self.mass_damping = mass_damping(&self.model, &self.materials);
+        let anchors = anchors.carried(&Stack::all(&net), &done.was, &self.state.sliding);
+        self.upload_state(&anchors);
+        let (mut scene, step) = (self.scene.clone(), self.step);
+        scene.follow(&done.node);
+        self.set_scene(scene)?;
+        self.step = step;
+        Ok(())
+    }
+
+    /// Where yarns stick now.
+    fn anchors(&self) -> Result<Anchors, GpuError> {
+        let [visits] = self.system.read(["visits"])?;
+        let own = |v: usize| self.unslid(v) + f64::from(visits[4 * v + 2]);
+        let mut anchors = Anchors {
+            own: (0..self.state.sliding.len()).map(own).collect(),
+            between: vec![0.0; self.state.sliding.len()],
+        };
+        for pair in self.model.net.nodes.iter().flat_map(|n| n.visits.windows(2)) {
+            let [a, b] = [pair[0].index(), pair[1].index()];
+            anchors.between[a] = self.unslid(a) - self.unslid(b) + f64::from(visits[4 * a + 3]);
+        }
+        Ok(anchors)
     }
 
     /// One attempt at a step, and why it was thrown away if it was.
@@ -319,7 +391,7 @@ impl GpuSimulator {
     }
 
     /// Writes the whole state to the device: positions about the origin, sliding from what is laid, anchors where yarns are.
-    fn upload_state(&self) {
+    fn upload_state(&self, anchors: &Anchors) {
         let Self { state, system, .. } = self;
         let pattern = &system.tables.pattern;
         let four = |v: DVec3| v.as_vec3().extend(0.0).to_array();
@@ -331,13 +403,13 @@ impl GpuSimulator {
             .map(|v| {
                 let frozen = self.model.sliding[v] == FROZEN;
                 let rate = if frozen { 0.0 } else { state.sliding_velocity[v] as f32 };
-                [slide(v), rate, slide(v), 0.0]
+                [slide(v), rate, (anchors.own[v] - self.unslid(v)) as f32, 0.0]
             })
             .collect();
         for node in &self.model.net.nodes {
             for pair in node.visits.windows(2) {
                 let [a, b] = [pair[0].index(), pair[1].index()];
-                visits[a][3] = visits[a][0] - visits[b][0];
+                visits[a][3] = (anchors.between[a] - self.unslid(a) + self.unslid(b)) as f32;
             }
         }
         system.write("position", &position);
@@ -375,6 +447,7 @@ impl GpuSimulator {
             }
             self.state.taken_in = self.taken_in;
             self.is_read = true;
+            self.read_at = self.time;
         }
         Ok(&self.state)
     }
@@ -382,6 +455,68 @@ impl GpuSimulator {
     /// The state that was last read back: what the CPU can go on from when the GPU is lost.
     pub fn last_state(&self) -> &YarnState {
         &self.state
+    }
+
+    /// Reads the state back if that has not been done for a while.
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn keep(&mut self) -> Result<(), GpuError> {
+        if self.time - self.read_at >= KEEP {
+            self.state()?;
+        }
+        Ok(())
+    }
+
+    /// Simulated time of the state that was last read back [s].
+    pub fn last_time_s(&self) -> f64 {
+        self.read_at
+    }
+
+    /// The yarns as they are drawn: `curves` on the device.
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn curves(&mut self) -> Result<YarnCurves, GpuError> {
+        let points = self.system.points(self.params(self.step))?;
+        let net = &self.model.net;
+        let at = |i: usize| {
+            let p = &points[4 * i..4 * i + 4];
+            let x = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            (p[3] > 0.0).then(|| (self.origin + x).as_vec3())
+        };
+        let mut middles = HashMap::new();
+        for (joint, contact) in self.system.tables.joints.iter().zip(&net.contacts) {
+            let yarns = std::iter::once(contact.new).chain(contact.old.iter().copied());
+            yarns.enumerate().for_each(|(i, ends)| {
+                middles.insert(ends, at(joint.point as usize + i));
+            });
+        }
+        Ok(string_together(net, &self.materials, &|visit| at(visit.index()), &|a, b| {
+            middles.get(&[a, b]).or_else(|| middles.get(&[b, a])).copied().flatten()
+        }))
+    }
+
+    /// What there is to report of the simulation so far; the forces of what holds the fabric are left out.
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn facts(&mut self) -> Result<Facts, GpuError> {
+        self.state()?;
+        let Self { model, materials, state, .. } = &*self;
+        Ok(Facts {
+            solver: "gpu".to_owned(),
+            steps: self.steps,
+            time_s: self.time,
+            kinetic_j: model.kinetic_energy(materials, state),
+            rejected_steps: self.rejected,
+            ..facts::measure(model, materials, (&self.scene, self.scene_time), state)
+        })
+    }
+
+    /// What has been done to the net, and has happened to it, since this simulation began.
+    pub fn surgery(&self) -> &Surgery {
+        &self.surgery
     }
 
     /// The net.

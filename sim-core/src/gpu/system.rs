@@ -38,6 +38,7 @@ pub(crate) struct System {
     iterate: Vec<Task>,
     settle: Vec<Task>,
     finish: Vec<Task>,
+    draw: Vec<Task>,
 }
 
 impl System {
@@ -70,6 +71,8 @@ impl System {
         keep("pulls", gpu.upload("pulls", &tables.pulls));
         keep("around", gpu.upload("around", &tables.around));
         keep("incoming", gpu.upload("incoming", &tables.incoming));
+        keep("joints", gpu.upload("joints", &tables.joints));
+        keep("old_dyes", gpu.upload("old_dyes", &tables.old_dyes));
         keep("groups", gpu.upload("groups", &p.groups));
         keep("sources", gpu.upload("sources", &p.sources));
         keep("shared_rows", gpu.upload("shared_rows", &p.shared_rows));
@@ -92,6 +95,7 @@ impl System {
             ("next_visits", 16 * visits),
             ("pull", 16 * tables.stacked.len() as u64),
             ("springs", 16 * tables.stacked.len() as u64),
+            ("points", 16 * u64::from(tables.point_count())),
             ("load", 8 * dofs),
             ("x", 4 * dofs),
             ("r", 4 * dofs),
@@ -142,6 +146,7 @@ impl System {
             iterate: Vec::new(),
             settle: Vec::new(),
             finish: Vec::new(),
+            draw: Vec::new(),
         };
         system.lay_parts(0);
         system.list_stages(0)?;
@@ -177,6 +182,7 @@ impl System {
             visit_count: self.visit_count,
             cell_count: self.cell_count,
             contact_capacity: self.contact_capacity,
+            joint_count: self.tables.joints.len() as u32,
             ..params
         }
     }
@@ -350,6 +356,13 @@ impl System {
             finish.push(self.task("judge", Some(c), chunk.counts.segments.div_ceil(WIDE), None, &[])?);
         }
         finish.push(all("commit", nodes.max(self.visit_count).div_ceil(WIDE))?);
+        let joints = self.tables.joints.len() as u32;
+        let draw = vec![
+            all("normal", wide_nodes)?,
+            all("lay_points", wide_nodes)?,
+            all("lay_middles", joints.div_ceil(WIDE))?,
+        ];
+        self.draw = draw;
         (self.prepare, self.factorise, self.solve) = (prepare, factorise, solve);
         (self.iterate, self.settle, self.finish) = (iterate, settle, finish);
         Ok(())
@@ -436,6 +449,18 @@ impl System {
         self.finish(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
         self.verdict()
+    }
+
+    /// Control points of the yarns as they are drawn.
+    pub fn points(&self, params: Params) -> Result<Vec<f32>, GpuError> {
+        self.write("params", &[params]);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        record(&mut pass, &self.draw);
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
+        let [points] = self.read(["points"])?;
+        Ok(points)
     }
 
     fn verdict(&self) -> Result<Verdict, GpuError> {

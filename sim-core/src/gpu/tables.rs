@@ -6,7 +6,7 @@
 
 use super::GpuError;
 use super::layout::{
-    BEND_OUT, Bend, Block, Counts, MOST_STACK, Material as Yarn, Node, OF_BEND, OF_SEGMENT, OF_SHEAR,
+    BEND_OUT, Bend, Block, Counts, Joint, MOST_STACK, Material as Yarn, Node, OF_BEND, OF_SEGMENT, OF_SHEAR,
     OF_WRAP, SEGMENT_OUT, SHEAR_OUT, Segment, Shear, Stacked, WRAP_OUT, Wrap,
 };
 use super::pattern::Pattern;
@@ -51,6 +51,8 @@ pub(crate) struct Tables {
     pub pulls: Vec<u32>,
     pub around: Vec<u32>,
     pub incoming: Vec<u32>,
+    pub joints: Vec<Joint>,
+    pub old_dyes: Vec<u32>,
     pub chunks: Vec<Chunk>,
     /// Where the positions are measured from [m].
     pub origin: DVec3,
@@ -90,6 +92,8 @@ impl Tables {
             pulls: Vec::new(),
             around: Vec::new(),
             incoming: Vec::new(),
+            joints: Vec::new(),
+            old_dyes: Vec::new(),
             chunks: Vec::new(),
             origin,
             pattern,
@@ -97,6 +101,7 @@ impl Tables {
         let blocks = tables.lay_rows(&near);
         tables.lay_elements(model, take_in, &blocks);
         tables.lay_stacks(model);
+        tables.lay_joints(model);
         tables.set_materials(model, materials);
         Ok(tables)
     }
@@ -364,6 +369,34 @@ impl Tables {
             (record.laid_x, record.laid_y, record.laid_z) = laid.into();
             (record.normal_x, record.normal_y, record.normal_z) = node.normal.as_vec3().into();
         }
+    }
+
+    /// The middles of stitch contacts.
+    fn lay_joints(&mut self, model: &Model) {
+        let net = &model.net;
+        let mut point = net.visits.len() as u32;
+        for contact in &net.contacts {
+            let [p, q] = contact.new.map(|v| net.visits[v.index()].node.index());
+            let rank = |visit: VisitId| net.nodes[p].visits.iter().position(|v| *v == visit);
+            let old_in_front = contact.old.first().and_then(|o| rank(o[0])) < rank(contact.new[0]);
+            let old = self.old_dyes.len() as u32;
+            self.old_dyes.extend(contact.old.iter().map(|ends| model.dye_of[ends[0].index()]));
+            self.joints.push(Joint {
+                node_0: self.pattern.new[p],
+                node_1: self.pattern.new[q],
+                dye: model.dye_of[contact.new[0].index()],
+                old,
+                old_end: self.old_dyes.len() as u32,
+                point,
+                side: (if old_in_front { 1.0 } else { -1.0 }) * contact.handedness as f32,
+            });
+            point += 1 + contact.old.len() as u32;
+        }
+    }
+
+    /// Control points in all.
+    pub fn point_count(&self) -> u32 {
+        self.stacked.len() as u32 + self.joints.len() as u32 + self.old_dyes.len() as u32
     }
 
     /// What follows from materials: of nodes, and of crossings of woven cloth.

@@ -7,12 +7,13 @@
 
 use super::tail::Link;
 use crate::model::Model;
+use glam::DMat3;
 
 /// The lower triangle of a symmetric matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockMatrix {
     /// First unknown of each node, [node_count + 1].
-    start: Vec<u32>,
+    pub start: Vec<u32>,
     /// First entry of each column, [dof_count + 1].
     pub column: Vec<u32>,
     /// Row of each entry.
@@ -22,9 +23,9 @@ pub(crate) struct BlockMatrix {
     /// Blocks outside of the pattern.
     pub tail: Vec<Link>,
     /// Blocks under the diagonal of each node, first of them, [node_count + 1].
-    first_block: Vec<u32>,
+    pub first_block: Vec<u32>,
     /// Node of each block's rows, ascending within a column.
-    block_node: Vec<u32>,
+    pub block_node: Vec<u32>,
     /// Place of each block in the first column of its node.
     block_offset: Vec<u32>,
 }
@@ -89,14 +90,31 @@ impl BlockMatrix {
         (self.column[(start + j) as usize] + block + i) as usize - j as usize
     }
 
+    /// Tᵀ A T for the three translations T of all nodes: the sum of what joins positions to positions.
+    pub fn translated(&self) -> DMat3 {
+        let mut sum = DMat3::ZERO;
+        for node in 0..self.start.len() - 1 {
+            let blocks = self.first_block[node] as usize..self.first_block[node + 1] as usize;
+            for j in 0..3 {
+                for (k, offset) in self.block_offset[blocks.clone()].iter().enumerate() {
+                    // What lies below the diagonal counts for what lies above it too.
+                    for i in if k == 0 { j } else { 0 }..3 {
+                        let entry = self.value[self.place(self.start[node], *offset, i as u32, j as u32)];
+                        sum.col_mut(j)[i] += entry;
+                        if k > 0 || i > j {
+                            sum.col_mut(i)[j] += entry;
+                        }
+                    }
+                }
+            }
+        }
+        // Of a contact the diagonal blocks are in the sum, and should not be: it resists no common motion.
+        self.tail.iter().for_each(|link| sum -= 2.0 * link.block);
+        sum
+    }
+
     /// Adds to a diagonal entry.
     pub fn add_diagonal(&mut self, dof: usize, value: f64) {
         self.value[self.column[dof] as usize] += value;
-    }
-
-    /// Sets every entry to zero.
-    pub fn clear(&mut self) {
-        self.value.fill(0.0);
-        self.tail.clear();
     }
 }

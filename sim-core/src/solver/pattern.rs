@@ -1,18 +1,20 @@
-//! Where the entries of the incomplete factor are.
+//! Where the entries of a factor are.
 //!
 //! # Theory
 //! The unknowns of a group are eliminated at once. What that couples are the *rows* of the group: the unknowns, of groups
-//! eliminated later, that are joined to any of its own. A complete factorisation would hand the rows of each group on to
-//! all those after it. Here they are handed on once, from the rows of the matrix itself (one level of fill, IC(1)); products
-//! that fall on no row are dropped. A row is a single node, not a whole group: the legs of a loop reach a part of
-//! the next stitch only, which halves the factor.
+//! eliminated later, that are joined to any of its own. A complete factorisation hands the rows of each group on to the
+//! next group among them, and so through the whole tree of elimination. The incomplete one hands them on once, from the rows of
+//! the matrix itself (one level of fill, IC(1)); products that fall on no row are dropped. A row is a single node, not a whole
+//! group: the legs of a loop reach a part of the next stitch only, which halves the factor.
 //!
 //! # Practice
 //! Each group has a *front*: one dense matrix with a column for each of its n unknowns, and under the n rows of its own its m
 //! rows of others. Fronts lie one after the other, column by column.
 
+use super::dissection::dissected;
 use super::groups::groups;
 use super::matrix::BlockMatrix;
+use super::packed::tile_count;
 use super::parts::sort_into_parts;
 use crate::model::Model;
 use std::ops::Range;
@@ -34,6 +36,8 @@ pub(crate) struct Group {
     pub rows: Vec<u32>,
     /// Its front in the factor.
     pub front: Range<usize>,
+    /// The same, packed.
+    pub tiles: Range<usize>,
     /// What its elimination does to later fronts.
     pub runs: Vec<Run>,
 }
@@ -43,6 +47,7 @@ pub(crate) struct Part {
     pub groups: Range<usize>,
     pub unknowns: Range<usize>,
     pub fronts: Range<usize>,
+    pub tiles: Range<usize>,
 }
 
 /// The structure of an incomplete factor.
@@ -57,17 +62,40 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    pub fn new(model: &Model, matrix: &BlockMatrix) -> Self {
+    /// Of the complete factorisation.
+    pub fn complete(model: &Model, matrix: &BlockMatrix) -> Self {
+        let (members, parts) = dissected(model);
+        let order = Order::new(model, &members);
+        let mut rows = order.rows(model);
+        order.hand_on_always(&mut rows);
+        Self::new(model, matrix, order, &rows, parts)
+    }
+
+    /// Of the incomplete one.
+    pub fn incomplete(model: &Model, matrix: &BlockMatrix) -> Self {
         let mut members = groups(model);
         let parts = sort_into_parts(model, &mut members);
         let order = Order::new(model, &members);
-        let mut groups: Vec<Group> = Vec::with_capacity(members.len());
-        for (g, below) in order.rows(model).iter().enumerate() {
+        let mut rows = order.rows(model);
+        order.hand_on_once(&mut rows);
+        Self::new(model, matrix, order, &rows, parts)
+    }
+
+    fn new(
+        model: &Model,
+        matrix: &BlockMatrix,
+        order: Order,
+        rows: &[Vec<u32>],
+        parts: Vec<Range<usize>>,
+    ) -> Self {
+        let mut groups: Vec<Group> = Vec::with_capacity(rows.len());
+        for (g, below) in rows.iter().enumerate() {
             let rows: Vec<u32> = below.iter().flat_map(|n| order.unknowns(model, *n)).collect();
             let unknowns = order.first[g] as usize..order.first[g + 1] as usize;
-            let start = groups.last().map_or(0, |g| g.front.end);
-            let front = start..start + (unknowns.len() + rows.len()) * unknowns.len();
-            groups.push(Group { unknowns, rows, front, runs: Vec::new() });
+            let (front, tiles) = groups.last().map_or((0, 0), |g| (g.front.end, g.tiles.end));
+            let front = front..front + (unknowns.len() + rows.len()) * unknowns.len();
+            let tiles = tiles..tiles + tile_count(unknowns.len(), rows.len());
+            groups.push(Group { unknowns, rows, front, tiles, runs: Vec::new() });
         }
         let runs: Vec<Vec<Run>> = groups.iter().map(|group| runs(&groups, &order, &group.rows)).collect();
         groups.iter_mut().zip(runs).for_each(|(group, runs)| group.runs = runs);
@@ -79,11 +107,12 @@ impl Pattern {
             }
         }
         let part = |range: Range<usize>| {
-            let end = |at: usize| {
-                at.checked_sub(1).map_or((0, 0), |g| (groups[g].unknowns.end, groups[g].front.end))
-            };
-            let ((first, first_front), (last, last_front)) = (end(range.start), end(range.end));
-            Part { groups: range, unknowns: first..last, fronts: first_front..last_front }
+            let end =
+                |at: usize, of: &dyn Fn(&Group) -> usize| at.checked_sub(1).map_or(0, |g| of(&groups[g]));
+            let within = |of: &dyn Fn(&Group) -> usize| end(range.start, of)..end(range.end, of);
+            let unknowns = within(&|g| g.unknowns.end);
+            let (fronts, tiles) = (within(&|g| g.front.end), within(&|g| g.tiles.end));
+            Part { unknowns, fronts, tiles, groups: range }
         };
         let parts = parts.into_iter().map(part).collect();
         Self { parts, place: order.place, target, groups }
@@ -145,15 +174,30 @@ impl Order {
             }
         }
         self.tidy(&mut rows);
-        for handed_on in rows.clone() {
+        rows
+    }
+
+    /// Adds the fill of a complete factorisation: what a group is joined to goes on to the next of them, and from there on.
+    fn hand_on_always(&self, rows: &mut [Vec<u32>]) {
+        for group in 0..rows.len() {
+            self.tidy(&mut rows[group..=group]);
+            let Some(next) = rows[group].first().map(|n| self.group_of_node[*n as usize]) else { continue };
+            let on = rows[group].iter().filter(|n| self.group_of_node[**n as usize] > next).copied();
+            let on: Vec<u32> = on.collect();
+            rows[next as usize].extend(on);
+        }
+    }
+
+    /// Adds one level of fill: what a group is joined to goes on to all of them.
+    fn hand_on_once(&self, rows: &mut [Vec<u32>]) {
+        for handed_on in rows.to_vec() {
             for &b in &handed_on {
                 let group = self.group_of_node[b as usize];
                 let later = handed_on.iter().filter(|a| self.group_of_node[**a as usize] > group);
                 rows[group as usize].extend(later);
             }
         }
-        self.tidy(&mut rows);
-        rows
+        self.tidy(rows);
     }
 
     fn tidy(&self, rows: &mut [Vec<u32>]) {

@@ -2,7 +2,8 @@
 //!
 //! At each edge of either side it passes one node together with the yarn of that border: the end of the row, the strand of
 //! the cast-on, the chain of the bind-off, the leg of a live loop. The sides take turns in proportion to their numbers of edges. Until
-//! it is pulled the yarn reaches across the gap; it is taken in to [`STITCH`], which draws the borders together.
+//! it is pulled the yarn reaches across the gap; it is taken in until it only just crosses over ([`STITCH`]), which draws the
+//! borders together. Along the seam it stays as long as the borders are: pulled tighter than that it would gather them.
 
 use super::border::BoundOff;
 use super::{Draft, Port, course_port, wale_port};
@@ -12,7 +13,7 @@ use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::NodeKind;
 use glam::DVec3;
 
-/// Length of a pulled sewing stitch, in widths of an edge.
+/// How far a pulled sewing stitch reaches across the seam, in widths of an edge.
 const STITCH: f64 = 0.3;
 /// How far inside of its edge the sewing yarn catches the fabric, as a part of the height of the stitch there.
 const INSET: f64 = 0.12;
@@ -48,7 +49,8 @@ fn lay(
     let mut nodes: Vec<NodeId> = Vec::new();
     let mut width = 0.0;
     let mut dye = None;
-    for (_, [a, b]) in &edges {
+    let mut places: Vec<f64> = Vec::new();
+    for (place, [a, b]) in &edges {
         // A seam that was sewn lies on borders.
         let Some(h) = mesh.half_edge_between(*a, *b).or_else(|| mesh.half_edge_between(*b, *a)) else {
             continue;
@@ -67,13 +69,16 @@ fn lay(
         dye.get_or_insert(stitches.dyes()[face.index()]);
         width += mesh.position(*a).distance(mesh.position(*b));
         nodes.push(node);
+        places.push(*place);
     }
     let ends = [draft.new_port(), draft.new_port()];
     let first = draft.add_piece(ends, &nodes, dye.unwrap_or_default(), true);
-    let pulled = STITCH * width / nodes.len().max(1) as f64;
+    let across = STITCH * width / nodes.len().max(1) as f64;
     for (i, pair) in nodes.windows(2).enumerate() {
         let length = draft.node(pair[0]).0.position.distance(draft.node(pair[1]).0.position);
-        draft.take_in.push((first + i as u32, (length - pulled).max(0.0)));
+        // `width` is that of both sides together.
+        let along = (places[i + 1] - places[i]) * width / 2.0;
+        draft.take_in.push((first + i as u32, (length - along.hypot(across)).max(0.0)));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Files, undo, stages, play, views, settings.
 
+use crate::bundled;
 use crate::drawing::Stage;
 use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
@@ -12,6 +13,15 @@ use std::path::PathBuf;
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
     egui::Panel::top("top").show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
+            ui.menu_button("New", |ui| {
+                for bundled in &bundled::ALL {
+                    if ui.button(bundled.name).on_hover_text(bundled.about).clicked() {
+                        editor.request(Request::Begin(bundled));
+                    }
+                }
+            })
+            .response
+            .on_hover_text("Begin with a mesh that comes with the program");
             if ui
                 .button("Open…")
                 .on_hover_text("Open a project or a mesh; without a file dialog, write its path in the field")

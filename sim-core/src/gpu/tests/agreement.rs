@@ -6,6 +6,7 @@
 
 use super::{device, ten_fabrics};
 use crate::assembly::Start;
+use crate::costs::Costs;
 use crate::friction::Anchors;
 use crate::gpu::kernel::{Kernels, SOURCES, Source};
 use crate::gpu::layout::Params;
@@ -85,7 +86,7 @@ impl Pair {
         // As the device has it.
         let origin = gpu.origin();
         state.position.iter_mut().for_each(|x| *x = origin + (*x - origin).as_vec3().as_dvec3());
-        let stepper = Stepper::new(Model::new(net).unwrap(), &materials).unwrap();
+        let stepper = Stepper::new(Model::new(net).unwrap(), &materials, None);
         let anchors = Anchors::at(&stepper.stacks, &state.sliding);
         Self { stepper, now: Stuck { state, anchors }, scene, gpu }
     }
@@ -214,8 +215,8 @@ impl Pair {
         let mut x = v;
         let rhs = self.stepper.system.rhs.clone();
         let Stepper { model, system, .. } = &mut self.stepper;
-        let mut direct = Solver::direct(model, &system.matrix).unwrap();
-        direct.solve(model, &system.matrix, &rhs, &mut x).unwrap();
+        let mut direct = Solver::direct(model, &system.matrix);
+        direct.solve(model, &system.matrix, &rhs, &mut x, &mut Costs::default()).unwrap();
         let [solved] = self.gpu.system().read(["x"]).unwrap();
         let is_solved = verdict.status.solved == 1;
         let difference = if is_solved { self.unlike(&x, &solved) } else { f64::INFINITY };
@@ -227,10 +228,10 @@ impl Pair {
         let [pull] = self.gpu.system().read(["pull"]).unwrap();
         let cpu = &self.stepper.system.pull;
         let scale = cpu.iter().map(|p| p.length()).fold(0.0, f64::max);
-        let stacked = self.gpu.system().tables.stacked.iter().zip(pull.chunks(4));
-        let stacked = stacked.filter(|(s, _)| self.stepper.model.sliding[s.visit as usize] != FROZEN);
+        let stacked = self.gpu.system().tables.stacked.iter().zip(cpu).zip(pull.chunks(4));
+        let stacked = stacked.filter(|((s, _), _)| self.stepper.model.sliding[s.visit as usize] != FROZEN);
         let vector = |p: &[f32]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-        worst(stacked.map(|(s, p)| (cpu[s.visit as usize] - vector(p)).length() / scale))
+        worst(stacked.map(|((_, cpu), p)| (*cpu - vector(p)).length() / scale))
     }
 
     /// Anchors of friction, relative to how far yarns have slid.

@@ -77,3 +77,41 @@ fn a_step_that_goes_wrong_is_thrown_away() {
     assert!(matches!(error, SimError::Stuck { .. }), "{error}");
     assert!(apart(&before, gpu.state().unwrap()) == 0.0, "the state is that of the last good step");
 }
+
+#[test]
+fn yarns_are_drawn_as_on_the_cpu() {
+    for (name, net) in ten_fabrics() {
+        let net = Arc::new(net);
+        let Some((cpu, mut gpu)) = both(&net, &pinned(&net), 10) else { return };
+        let ours = crate::curves(&net, cpu.state(), cpu.materials());
+        let theirs = gpu.curves().unwrap();
+        assert_eq!(ours.curves.len(), theirs.curves.len(), "{name}");
+        let mut worst = 0.0_f32;
+        for (a, b) in ours.curves.iter().zip(&theirs.curves) {
+            assert_eq!((a.points.len(), &a.radii, &a.dyes), (b.points.len(), &b.radii, &b.dyes), "{name}");
+            worst = a.points.iter().zip(&b.points).map(|(a, b)| a.distance(*b)).fold(worst, f32::max);
+        }
+        println!("{name}: {worst:.1e} m");
+        // A thousandth of the yarn's radius.
+        assert!(worst < 4e-7, "{name}: {worst:e}");
+    }
+}
+
+#[test]
+fn a_cut_goes_on_as_on_the_cpu() {
+    let (_, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    let Some((mut cpu, mut gpu)) = both(&net, &pinned(&net), 20) else { return };
+    let cut = crate::Operation::Cut(stitch_mesh::ids::VisitId(40));
+    cpu.operate(cut.clone()).unwrap();
+    gpu.operate(cut).unwrap();
+    for _ in 0..3 {
+        cpu.step().unwrap();
+        gpu.step().unwrap();
+    }
+    assert_eq!(cpu.net().yarns.len(), gpu.net().yarns.len());
+    assert_eq!(gpu.surgery().operations.len(), cpu.surgery().operations.len());
+    let difference = apart(cpu.state(), gpu.state().unwrap());
+    println!("{difference:.1e} m");
+    assert!(difference < 10.0 * CLOSE);
+}

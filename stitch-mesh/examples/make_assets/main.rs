@@ -3,39 +3,13 @@
 //!
 //! All are polygons with a row structure that can be knitted, in metres, y up, front towards +z.
 
+mod garment;
+mod mesh;
+
+use garment::{SWEATER, T_SHIRT};
 use glam::DVec3;
-use std::collections::HashMap;
+use mesh::Mesh;
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write as _;
-
-/// A mesh in the making: vertices are named by any key, so that faces that share a vertex say so by sharing its name.
-#[derive(Default)]
-struct Mesh {
-    vertices: Vec<DVec3>,
-    names: HashMap<[i32; 3], usize>,
-    faces: Vec<Vec<usize>>,
-}
-
-impl Mesh {
-    fn vertex(&mut self, name: [i32; 3], position: DVec3) -> usize {
-        *self.names.entry(name).or_insert_with(|| {
-            self.vertices.push(position);
-            self.vertices.len() - 1
-        })
-    }
-
-    fn write(&self, name: &str, what: &str) -> std::io::Result<()> {
-        let mut text = format!("# Purlwise: {what} Unit: metre. Made by make_assets; CC0.\n");
-        for v in &self.vertices {
-            let _ = writeln!(text, "v {:.5} {:.5} {:.5}", v.x, v.y, v.z);
-        }
-        for face in &self.faces {
-            let corners: Vec<String> = face.iter().map(|v| (v + 1).to_string()).collect();
-            let _ = writeln!(text, "f {}", corners.join(" "));
-        }
-        std::fs::write(format!("assets/meshes/{name}.obj"), text)
-    }
-}
 
 /// Rings of quads about the y axis, from the lowest up; a last ring of radius zero closes the top with triangles.
 fn rings(around: i32, rings: &[(f64, f64)]) -> Mesh {
@@ -148,11 +122,57 @@ fn pullover() -> Mesh {
     mesh
 }
 
+/// A sleeveless pullover knitted in the round: a tube to the underarms, two panels beside the armholes, and above them a yoke
+/// that narrows over the shoulders to a collar.
+fn slipover() -> Mesh {
+    const HALF: i32 = 12; // faces across the front, and across the back
+    const ARMHOLE: std::ops::Range<usize> = 5..7; // rows of faces
+    /// Half the width, half the depth and the height of each ring [m].
+    const RINGS: [[f64; 3]; 14] = [
+        [0.172, 0.106, 0.00],
+        [0.172, 0.106, 0.04],
+        [0.172, 0.106, 0.08],
+        [0.172, 0.106, 0.12],
+        [0.172, 0.106, 0.16],
+        [0.170, 0.104, 0.20],
+        [0.165, 0.098, 0.24],
+        [0.157, 0.085, 0.28],
+        [0.143, 0.068, 0.31],
+        [0.100, 0.060, 0.33],
+        [0.068, 0.055, 0.35],
+        [0.064, 0.053, 0.38],
+        [0.064, 0.053, 0.41],
+        [0.064, 0.053, 0.44],
+    ];
+    let mut mesh = Mesh::default();
+    for j in 0..RINGS.len() - 1 {
+        let mut at = |i: i32, j: usize| {
+            let [width, depth, y] = RINGS[j];
+            // Once round: over the front from right to left as it is worn, and back.
+            let turn = PI * (f64::from(i) / f64::from(HALF) - 0.5);
+            let z = depth * turn.cos().abs().powf(0.6) * turn.cos().signum();
+            mesh.vertex([i % (2 * HALF), j as i32, 0], DVec3::new(width * turn.sin(), y, z))
+        };
+        let mut faces = Vec::new();
+        for i in 0..2 * HALF {
+            let at_side = [0, HALF - 1, HALF, 2 * HALF - 1].contains(&i);
+            if !(at_side && ARMHOLE.contains(&j)) {
+                faces.push(vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        mesh.faces.extend(faces);
+    }
+    mesh
+}
+
 fn main() -> std::io::Result<()> {
     std::fs::create_dir_all("assets/meshes")?;
     swatch().write("swatch", "a flat piece.")?;
     cowl().write("cowl", "a tube.")?;
     poncho().write("poncho", "a poncho, knitted from hem to neck.")?;
     hat().write("hat", "a hat with decreases to the crown.")?;
-    pullover().write("pullover", "a child's sleeveless pullover.")
+    pullover().write("pullover", "a child's sleeveless pullover.")?;
+    slipover().write("slipover", "a sleeveless pullover with a collar, knitted in the round.")?;
+    SWEATER.write("sweater", "a sweater in four pieces, to be sewn together.")?;
+    T_SHIRT.write("t-shirt", "a sleeveless shirt in two pieces, to be sewn together.")
 }
