@@ -30,12 +30,12 @@
 //! sweep, each a dispatch.
 //!
 //! # Practice
-//! - A step is one submission with one read-back of 40 bytes, as long as conjugate gradients take no more iterations than the step before and
+//! - A step is one submission with one small read-back, as long as conjugate gradients take no more iterations than the step before and
 //!   a few. A kernel that finds them done returns at once; if they are not, another submission goes on with them.
 //! - The device is asked for no more than the limits that every WebGPU device has. What grows with elements or the matrix is kept in
 //!   chunks of less than 128 MiB; a loop takes 23 KB in all.
 //! - Topology edits and yarn that slips out make a new net, on the CPU, and new tables.
-//! - Measured on lavapipe only, where the CPU solver is some ten times as fast; not yet on hardware.
+//! - Run on lavapipe only, where it is slower than the CPU solver; speed on hardware has not been measured.
 
 mod device;
 mod kernel;

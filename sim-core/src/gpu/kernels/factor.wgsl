@@ -79,7 +79,7 @@ fn factorise(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) 
     storageBarrier();
     subtract(group, lane);
 
-    // Where dropping has made the block indefinite, a part of its diagonal is added, more earlier try to try.
+    // Where dropping has made the block indefinite, a part of its diagonal is added, more with every try.
     var shift = 0.0;
     for (var attempt = 0u; attempt < 8u; attempt++) {
         if lane == 0u {
