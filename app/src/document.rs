@@ -30,6 +30,14 @@ struct Step {
 }
 
 impl Step {
+    /// Of a large fabric its yarn is far more than its stitches, so the history keeps it only where it has moved.
+    fn new(commands: Vec<Command>, mut project: Project, survivors: Option<Arc<Survivors>>) -> Self {
+        if let Some(fabric) = &mut project.fabric {
+            fabric.put_away();
+        }
+        Self { commands, project, survivors }
+    }
+
     fn name(&self) -> String {
         let more = self.commands.len() - 1;
         let first = self.commands.first().map(Command::name).unwrap_or_default();
@@ -80,7 +88,7 @@ impl Document {
         self.undone.clear();
         let survivors = survivors.map(Arc::new);
         let Some(step) = self.done.last_mut().filter(|_| amends) else {
-            self.done.push(Step { commands: vec![command], project: before, survivors });
+            self.done.push(Step::new(vec![command], before, survivors));
             return;
         };
         step.survivors = match (step.survivors.take(), survivors) {
@@ -119,7 +127,7 @@ impl Document {
             restored.keep_yarn_of(&self.project, was);
         }
         let project = std::mem::replace(&mut self.project, restored);
-        Step { commands, project, survivors }
+        Step::new(commands, project, survivors)
     }
 
     /// Commands done so far, oldest first.
@@ -141,7 +149,7 @@ impl Document {
     /// began with another net (one from before an edit) is dropped.
     pub fn take_over(&mut self, moved: Moved) {
         if let Some(fabric) = &self.project.fabric
-            && Arc::ptr_eq(&moved.from, &fabric.net)
+            && fabric.net_if_laid().is_some_and(|net| Arc::ptr_eq(&moved.from, net))
             && moved.state.fits(&moved.net)
             && moved.state.is_finite()
         {

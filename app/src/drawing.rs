@@ -55,7 +55,7 @@ pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Resul
         Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown),
         Stage::Yarn => {
             let fabric = project.fabric()?;
-            let yarn = curves(&fabric.net, &fabric.state(), &project.materials);
+            let yarn = curves(fabric.net(), &fabric.state(), &project.materials);
             // The bodies are where the simulation has left them.
             let time_s = fabric.facts.as_ref().map_or(0.0, |f| f.time_s);
             Drawing { yarn, solids: solids(&project.scene, time_s), ..Drawing::default() }

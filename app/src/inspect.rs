@@ -98,7 +98,7 @@ pub fn inspect(project: &Project) -> Inspection {
 }
 
 fn with_fabric(mut facts: Inspection, fabric: &Fabric) -> Inspection {
-    let Fabric { stitches, woven, net, .. } = fabric;
+    let (Fabric { stitches, woven, .. }, net) = (fabric, fabric.net());
     let state = fabric.state();
     facts.rows = stitches.rows().len();
     facts.loops = stitches.loop_count();

@@ -6,7 +6,7 @@
 //! | `command`, `document` | every change is a [`command::Command`]; a [`document::Document`] does, undoes and redoes them |
 //! | `cloth` | woven cloth as a project of its own |
 //! | `relax` | relaxing the stitch mesh of a project, and how even it is |
-//! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet`, `charts` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, and the one that comes with the program, the contact sheet of stitches, knitting charts |
+//! | `inspect`, `problems`, `preview`, `scenes`, `drawing`, `export`, `bundled`, `sheet`, `charts` | facts, what is wrong, what other counts would come to, named scenes, pictures and curves of a project, what comes with the program, the contact sheet of stitches, knitting charts |
 //! | `lab` | virtual textile experiments |
 //! | `page` | pages laid out as the window is, drawn without one |
 //! | `cli` | the command line |

@@ -1,6 +1,5 @@
 //! The patterns that come with the program, and a picture of each.
 
-use crate::fabric::Fabric;
 use crate::project::Project;
 use crate::scenes::pinned_out;
 use crate::written::{swatch, title};
@@ -103,7 +102,8 @@ fn picture(gpu: &Gpu, text: &str) -> Result<RgbaImage> {
     const TIME: f64 = 0.15;
     const SHOWN: f32 = 0.27;
     let project = high(text)?;
-    let Fabric { stitches, net, .. } = project.fabric()?;
+    let fabric = project.fabric()?;
+    let (stitches, net) = (&fabric.stitches, fabric.net());
     let materials = project.materials.clone();
     let scene = pinned_out(stitches, (net, &net.laid_state()), &materials.base, |_| true);
     let mut simulator = Simulator::new(net, materials.clone(), scene, net.laid_state())?;

@@ -140,13 +140,13 @@ fn loose(fabric: &Fabric) -> impl Iterator<Item = Problem> {
     } else {
         "nothing holds its loop, it would run: yarn has been cut or dropped there; laying the yarn anew mends it"
     };
-    let loops = loose_loops(&fabric.stitches, &fabric.net);
+    let loops = loose_loops(&fabric.stitches, fabric.net());
     loops.into_iter().map(move |top| Problem::at_face(Of::Stitches, fabric.stitches.mesh().face(top), what))
 }
 
 /// Rings of yarn where a spiral was asked for.
 fn closed(fabric: &Fabric) -> Option<Problem> {
-    let net = &fabric.net;
+    let net = fabric.net();
     let ring = net.yarns.iter().find(|y| y.period.is_some() && fabric.stitches.marks().spiral)?;
     let mut faces = ring.visits.clone().map(|v| net.visits[VisitId(v).index()].node);
     let face = faces.find_map(|n| net.nodes[n.index()].face)?;

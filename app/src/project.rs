@@ -11,7 +11,7 @@ use crate::files;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use sim_core::{Facts, Material, Materials, RestShape, Scene, Surgery, carry_over};
+use sim_core::{Facts, Material, Materials, RestShape, Scene, Surgery};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -93,9 +93,7 @@ impl Project {
         if was.is_none() && !fabric.stitches.has_mesh_of(&from.stitches) {
             return;
         }
-        let was = |f: FaceId| was.map_or(Some(f), |list| list.get(f.index()).copied().flatten());
-        fabric.state = from.state.as_ref().map(|s| Arc::new(carry_over(&from.net, s, &fabric.net, was)));
-        fabric.facts = from.facts.clone().filter(|_| Arc::ptr_eq(&fabric.net, &from.net));
+        fabric.continue_from(from, was.map(<[_]>::to_vec));
     }
 
     /// Takes over where a simulation that began with this fabric has brought its yarn. Pins on nodes that are gone go too.
@@ -213,7 +211,7 @@ impl FileFabric {
             rest_shape: fabric.rest_shape.as_deref().cloned(),
             surgery: Some(&fabric.surgery).filter(|s| **s != Surgery::default()).cloned(),
             woven: (*fabric.woven).clone(),
-            state: fabric.state.as_deref().cloned(),
+            state: fabric.simulated().as_deref().cloned(),
             facts: fabric.facts.clone(),
         }
     }
@@ -234,10 +232,10 @@ impl FileFabric {
         let mut fabric = Fabric::laid(stitches, self.rest_shape.map(Arc::new), Arc::new(self.woven))
             .after(self.surgery.unwrap_or_default())?;
         if let Some(state) = self.state {
-            if !state.fits(&fabric.net) || !state.is_finite() {
+            if !state.fits(fabric.net()) || !state.is_finite() {
                 bail!("the state of the yarn does not belong to the stitches");
             }
-            fabric.state = Some(Arc::new(state));
+            fabric.put(state);
             fabric.facts = self.facts;
         }
         Ok(fabric)
@@ -279,7 +277,7 @@ impl File {
             counts.check(&project.labelled).context("the counts of the edges")?;
         }
         project.fabric = self.fabric.map(FileFabric::into_fabric).transpose()?;
-        project.scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
+        project.scene.validate(project.fabric.as_ref().map_or(0, |f| f.net().nodes.len()))?;
         Ok(project)
     }
 }
@@ -307,9 +305,9 @@ mod tests {
         stitches.set_dye(FaceId(2), "#c04030".parse().unwrap()).unwrap();
         stitches.set_live([VertexId(15), VertexId(16)], true).unwrap();
         let mut fabric = Fabric::new(stitches);
-        let mut state = fabric.net.laid_state();
+        let mut state = fabric.net().laid_state();
         state.position[3].x += 0.1 + 1e-17;
-        fabric.state = Some(Arc::new(state));
+        fabric.put(state);
         before.fabric = Some(fabric);
         before.save(&path).unwrap();
         let after = Project::open(&path).unwrap();
@@ -317,7 +315,7 @@ mod tests {
         assert_eq!(after.materials, before.materials);
         let (a, b) = (after.fabric.unwrap(), before.fabric.unwrap());
         assert_eq!(a.stitches, b.stitches);
-        assert_eq!(a.state, b.state);
+        assert_eq!(a.simulated(), b.simulated());
     }
 
     #[test]

@@ -6,10 +6,10 @@ use sim_core::{Body, Pose, Scene};
 
 /// The bodies of a scene at a time since it began [s].
 pub fn solids(scene: &Scene, time_s: f64) -> Solids {
-    Solids { solids: scene.bodies.iter().map(|body| solid(body, &body.pose(time_s))).collect() }
+    Solids { solids: scene.bodies.iter().map(|body| solid(body, &body.pose(time_s), time_s)).collect() }
 }
 
-fn solid(body: &Body, pose: &Pose) -> Solid {
+fn solid(body: &Body, pose: &Pose, time_s: f64) -> Solid {
     let at = |p: DVec3| -> Vec3 { pose.apply(p).as_vec3() };
     match body {
         Body::Ground { height, .. } => Solid::Ground { height: at(DVec3::Y * *height).y },
@@ -31,6 +31,11 @@ fn solid(body: &Body, pose: &Pose) -> Solid {
             let positions = mesh.positions.iter().map(|p| at(*p)).collect();
             Solid::Mesh { positions, triangles: mesh.triangles.clone() }
         }
-        Body::Moving { body, .. } => solid(body, pose),
+        Body::Sequence { frames, .. } => {
+            let mesh = frames.at(time_s);
+            let positions = mesh.positions.iter().map(|p| at(*p)).collect();
+            Solid::Mesh { positions, triangles: mesh.triangles }
+        }
+        Body::Moving { body, .. } => solid(body, pose, time_s),
     }
 }

@@ -53,13 +53,18 @@ impl Compose {
         bind_group(device, &self.layout, resources)
     }
 
+    /// Makes the picture, or a rectangle of it.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         inputs: &wgpu::BindGroup,
         picture: &wgpu::TextureView,
+        rectangle: Option<[u32; 4]>,
     ) {
-        let mut pass = begin_pass(encoder, "compose", Some((picture, None)), None, false);
+        let mut pass = begin_pass(encoder, "compose", Some((picture, None)), None, rectangle.is_some());
+        if let Some([left, top, width, height]) = rectangle {
+            pass.set_scissor_rect(left, top, width, height);
+        }
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, inputs, &[]);
         pass.draw(0..3, 0..1);

@@ -18,6 +18,7 @@
 
 mod camera;
 mod compose;
+mod damage;
 mod drawing;
 mod error;
 mod frame;

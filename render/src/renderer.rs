@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use crate::compose::Compose;
+use crate::damage::{Part, Wipe};
 use crate::frame::Frame;
 use crate::light::Lights;
 use crate::lines::LinePipeline;
@@ -36,6 +37,7 @@ pub struct Renderer {
     pub(crate) shadow_map: ShadowMap,
     pub(crate) occlusion: Occlusion,
     pub(crate) compose: Compose,
+    wipe: Wipe,
     surfaces: SurfacePipelines,
     lines: LinePipeline,
     yarn: YarnPipelines,
@@ -63,12 +65,73 @@ impl Renderer {
             shadow_map: ShadowMap::new(device, shadows),
             occlusion: Occlusion::new(device, samples, if quality == Quality::Still { 8 } else { 4 }),
             compose: Compose::new(device, samples, supersampling),
+            wipe: Wipe::new(device, samples),
             surfaces: SurfacePipelines::new(device, &frame_layout, &lit_frame_layout, samples, shadows),
             lines: LinePipeline::new(device, &frame_layout, samples),
             yarn: YarnPipelines::new(gpu, &frame_layout, &lit_frame_layout, samples),
             frame_layout,
             lit_frame_layout,
         }
+    }
+
+    /// Records the drawing of what has changed in a scene since it was drawn into a viewport's picture with the same camera: in
+    /// the part of the picture around it, if that is small. The picture becomes what [`Self::draw`] would make it.
+    pub fn redraw(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        viewport: &Viewport,
+        camera: &Camera,
+        scene: &Scene,
+    ) {
+        let size = self.scene_size(viewport);
+        // Shadows and hollows reach beyond what casts them.
+        let local =
+            !self.shadows && scene.yarn.radius() == 0.0 && !scene.lines.flips(self.scale(camera, size));
+        let part = scene.damage.part(camera, size, self.supersampling as f32).filter(|_| local);
+        let Some(part) = part else {
+            self.draw(gpu, encoder, viewport, camera, scene);
+            return;
+        };
+        let [left, top, width, height] = part.rectangle;
+        let color = (&viewport.color, viewport.resolved.as_ref());
+        let mut pass = begin_pass(encoder, "part", Some(color), Some((&viewport.depth, 0.0)), true);
+        pass.set_scissor_rect(left, top, width, height);
+        self.wipe.draw(&mut pass);
+        self.draw_surfaces(&mut pass, viewport, scene, self.scale(camera, size), Some(&part));
+        drop(pass);
+        let [left, top] = [left, top].map(|pixels| pixels / self.supersampling);
+        let [right, bottom] =
+            [0, 1].map(|i| (part.rectangle[i] + part.rectangle[i + 2]).div_ceil(self.supersampling));
+        let of_picture = [left, top, right - left, bottom - top];
+        self.compose.draw(encoder, &viewport.compose, viewport.view(), Some(of_picture));
+    }
+
+    /// Size of what is drawn for a picture [px].
+    fn scene_size(&self, viewport: &Viewport) -> Vec2 {
+        Vec2::from(viewport.size().map(|pixels| (pixels * self.supersampling) as f32))
+    }
+
+    /// Pixels of the picture that a metre covers at the distance of what the camera looks at.
+    fn scale(&self, camera: &Camera, size: Vec2) -> f32 {
+        camera.pixels_per_radian(size.y) / camera.distance / self.supersampling as f32
+    }
+
+    /// Draws everything but yarn, all or what reaches into a part of the picture.
+    fn draw_surfaces(
+        &self,
+        pass: &mut wgpu::RenderPass,
+        viewport: &Viewport,
+        scene: &Scene,
+        scale: f32,
+        part: Option<&Part>,
+    ) {
+        pass.set_bind_group(0, &viewport.lit_frame, &[]);
+        self.surfaces.draw_faces(pass, &scene.faces, part);
+        self.surfaces.draw_solids(pass, &scene.solids);
+        pass.set_bind_group(0, &viewport.plain_frame, &[]);
+        self.lines.draw_outlines(pass, &scene.lines, scale, part);
+        self.lines.draw(pass, &scene.marks, part);
     }
 
     /// Records the drawing of a scene into a viewport's picture. A viewport is drawn once a submission.
@@ -80,7 +143,7 @@ impl Renderer {
         camera: &Camera,
         scene: &Scene,
     ) {
-        let size = Vec2::from(viewport.size().map(|pixels| (pixels * self.supersampling) as f32));
+        let size = self.scene_size(viewport);
         let lights = Lights::around(camera);
         let frustum = scene.bounds().filter(|_| self.shadows);
         let frustum = frustum.map(|bounds| ShadowFrustum::new(bounds, camera, size.x / size.y, lights.key));
@@ -106,29 +169,13 @@ impl Renderer {
         let mut pass = begin_pass(encoder, "scene", Some(color), Some((&viewport.depth, 0.0)), false);
         pass.set_bind_group(0, &viewport.lit_frame, &[]);
         self.yarn.draw(gpu, &mut pass, &scene.yarn, camera.scale_at(size));
-        self.surfaces.draw_faces(&mut pass, &scene.faces);
-        self.surfaces.draw_solids(&mut pass, &scene.solids);
-        pass.set_bind_group(0, &viewport.plain_frame, &[]);
-        let scale = camera.pixels_per_radian(size.y) / camera.distance / self.supersampling as f32;
-        self.lines.draw_outlines(&mut pass, &scene.lines, scale);
-        self.lines.draw(&mut pass, &scene.marks);
+        self.draw_surfaces(&mut pass, viewport, scene, self.scale(camera, size), None);
         drop(pass);
 
         if frame.occlusion_radius > 0.0 {
             self.occlusion.draw(encoder, &viewport.occlusion);
         }
-        self.compose.draw(encoder, &viewport.compose, viewport.view());
-    }
-
-    /// Records the drawing of those faces over a viewport's picture that have other colours than when it was drawn last, with
-    /// the same camera and nothing else changed. Of a large mesh that is far less than all of it. Lines stay in front.
-    pub fn recolor(&self, encoder: &mut wgpu::CommandEncoder, viewport: &Viewport, scene: &Scene) {
-        let color = (&viewport.color, viewport.resolved.as_ref());
-        let mut pass = begin_pass(encoder, "new colours", Some(color), Some((&viewport.depth, 0.0)), true);
-        pass.set_bind_group(0, &viewport.lit_frame, &[]);
-        self.surfaces.draw_changed(&mut pass, &scene.faces);
-        drop(pass);
-        self.compose.draw(encoder, &viewport.compose, viewport.view());
+        self.compose.draw(encoder, &viewport.compose, viewport.view(), None);
     }
 }
 

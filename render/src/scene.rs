@@ -3,6 +3,7 @@
 
 use stitch_mesh::yarn_curves::YarnCurves;
 
+use crate::damage::Damage;
 use crate::drawing::{Drawing, Faces, Lines};
 use crate::lines::LineMesh;
 use crate::surface::SurfaceMesh;
@@ -17,6 +18,8 @@ pub struct Scene {
     pub(crate) lines: LineMesh,
     pub(crate) marks: LineMesh,
     pub(crate) yarn: YarnMesh,
+    /// What has changed since it was drawn.
+    pub(crate) damage: Damage,
     face_bounds: Option<Bounds>,
     solid_bounds: Option<Bounds>,
 }
@@ -36,6 +39,7 @@ impl Scene {
             lines: LineMesh::new(),
             marks: LineMesh::new(),
             yarn: YarnMesh::new(),
+            damage: Damage::all(),
             face_bounds: None,
             solid_bounds: None,
         }
@@ -52,37 +56,50 @@ impl Scene {
     /// Replaces the polygons.
     pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces) -> Result<(), RenderError> {
         self.face_bounds = Bounds::of(faces.positions.iter().copied());
-        self.faces.set_faces(gpu, faces)
+        self.faces.set_faces(gpu, faces, &mut self.damage)
     }
 
-    /// Shows `faces`, which were set before, in other colours, [polygon_count].
-    pub fn set_colors(&mut self, gpu: &Gpu, faces: &Faces, colors: &[[f32; 3]]) -> Result<(), RenderError> {
-        self.faces.set_colors(gpu, faces, colors)
+    /// Shows the faces that were set before in other colours, [polygon_count].
+    pub fn set_colors(&mut self, gpu: &Gpu, colors: &[[f32; 3]]) {
+        self.faces.set_colors(gpu, colors, &mut self.damage);
     }
 
     /// Says that what the scene holds now has been drawn.
     pub fn settle(&mut self) {
-        self.faces.settle();
+        self.damage = Damage::none();
+        self.lines.settle();
+    }
+
+    /// Whether what the scene holds has been drawn.
+    pub fn is_settled(&self) -> bool {
+        self.damage.is_none()
     }
 
     /// Replaces the lines.
     pub fn set_lines(&mut self, gpu: &Gpu, lines: &Lines) -> Result<(), RenderError> {
-        self.lines.set(gpu, lines)
+        self.lines.set(gpu, lines, &mut self.damage)
     }
 
     /// Replaces the marks: lines over everything else that come and go with the pointer, however many other lines there are.
     pub fn set_marks(&mut self, gpu: &Gpu, marks: &Lines) -> Result<(), RenderError> {
-        self.marks.set(gpu, marks)
+        self.marks.set(gpu, marks, &mut self.damage)
     }
 
     /// Replaces the bodies.
     pub fn set_solids(&mut self, gpu: &Gpu, solids: &Solids) -> Result<(), RenderError> {
-        self.solid_bounds = solids.bounds();
+        let bounds = solids.bounds();
+        if bounds.is_some() || self.solid_bounds.is_some() {
+            self.damage = Damage::all();
+        }
+        self.solid_bounds = bounds;
         self.solids.set_solids(gpu, solids)
     }
 
     /// Replaces the yarn.
     pub fn set_yarn(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
+        if !yarn.curves.is_empty() || self.yarn.radius() > 0.0 {
+            self.damage = Damage::all();
+        }
         self.yarn.set(gpu, yarn)
     }
 
@@ -112,15 +129,29 @@ impl GrowingBuffer {
 
     /// Replaces the contents.
     pub fn write(&mut self, gpu: &Gpu, bytes: &[u8], limit: u64) -> Result<(), RenderError> {
+        self.write_from(gpu, bytes, 0, limit)
+    }
+
+    /// Replaces the contents, which are the same as before up to byte `same`.
+    pub fn write_from(
+        &mut self,
+        gpu: &Gpu,
+        bytes: &[u8],
+        same: usize,
+        limit: u64,
+    ) -> Result<(), RenderError> {
         let needed = bytes.len() as u64;
         if needed > limit {
+            self.buffer = None; // what it holds is no part of what comes next
             return Err(RenderError::TooLarge { what: self.what, bytes: needed, limit });
         }
         if needed == 0 {
             return Ok(());
         }
         let fits = |buffer: &wgpu::Buffer| buffer.size() >= needed;
+        let mut same = same.min(bytes.len());
         let buffer = self.buffer.take().filter(fits).unwrap_or_else(|| {
+            same = 0;
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(self.what),
                 // A quarter more than needed: a fabric that grows by the row is not reallocated at every row.
@@ -129,8 +160,15 @@ impl GrowingBuffer {
                 mapped_at_creation: false,
             })
         });
-        gpu.queue.write_buffer(&buffer, 0, bytes);
+        gpu.queue.write_buffer(&buffer, same as u64, &bytes[same..]);
         self.buffer = Some(buffer);
         Ok(())
+    }
+
+    /// Replaces some of the contents, from byte `first` on.
+    pub fn overwrite(&self, gpu: &Gpu, bytes: &[u8], first: usize) {
+        if let Some(buffer) = &self.buffer {
+            gpu.queue.write_buffer(buffer, first as u64, bytes);
+        }
     }
 }

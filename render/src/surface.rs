@@ -4,7 +4,8 @@ use glam::{Vec3, Vec4};
 use std::ops::Range;
 use wgpu::CompareFunction::{GreaterEqual, Less};
 
-use crate::drawing::{Faces, Polygon, triangles};
+use crate::damage::{Damage, Only, Part, differences, runs};
+use crate::drawing::Faces;
 use crate::light;
 use crate::pipeline::{COLOR_FORMAT, Pipeline, shader};
 use crate::scene::GrowingBuffer;
@@ -23,10 +24,37 @@ pub(crate) struct SurfaceMesh {
     indices: GrowingBuffer,
     /// Number of indices.
     count: u32,
-    /// The colours of polygons.
-    now: Vec<[f32; 3]>,
-    /// Indices of the polygons that have had other colours since all were drawn.
-    changed: Vec<Range<u32>>,
+    now: Polygons,
+}
+
+/// Polygons as they are on the GPU.
+#[derive(Debug, Default)]
+struct Polygons {
+    /// Corners with normals.
+    corners: Vec<[Vec3; 2]>,
+    /// First corner and first index of each polygon, and the end of all.
+    starts: Vec<[u32; 2]>,
+    colors: Vec<[f32; 3]>,
+}
+
+impl Polygons {
+    fn count(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    fn corners(&self, polygon: usize) -> &[[Vec3; 2]] {
+        &self.corners[self.starts[polygon][0] as usize..self.starts[polygon + 1][0] as usize]
+    }
+
+    fn outline(&self, polygon: usize) -> impl Iterator<Item = Vec3> + Clone + '_ {
+        self.corners(polygon).iter().map(|[position, _]| *position)
+    }
+
+    /// Colour and opacity of the corners of some polygons.
+    fn corner_colors(&self, polygons: Range<usize>) -> Vec<Vec4> {
+        let each = polygons.map(|p| (Vec3::from(self.colors[p]).extend(1.0), self.corners(p).len()));
+        each.flat_map(|(color, n)| std::iter::repeat_n(color, n)).collect()
+    }
 }
 
 impl SurfaceMesh {
@@ -36,59 +64,71 @@ impl SurfaceMesh {
             colors: GrowingBuffer::new("colours of corners", wgpu::BufferUsages::VERTEX),
             indices: GrowingBuffer::new("triangles", wgpu::BufferUsages::INDEX),
             count: 0,
-            now: Vec::new(),
-            changed: Vec::new(),
+            now: Polygons::default(),
         }
     }
 
     /// Replaces the triangles by those of polygons, each shaded by its mean normal so that a warped polygon still reads
     /// as one.
-    pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces) -> Result<(), RenderError> {
-        let mut shape = Vec::with_capacity(faces.polygons.len() * 4);
-        let mut indices = Vec::with_capacity(faces.polygons.len() * 6);
+    pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces, damage: &mut Damage) -> Result<(), RenderError> {
+        let mut now = Polygons {
+            corners: Vec::with_capacity(faces.polygons.len() * 4),
+            starts: Vec::with_capacity(faces.polygons.len() + 1),
+            colors: faces.polygons.iter().map(|p| p.color).collect(),
+        };
+        let mut indices: Vec<u32> = Vec::with_capacity(faces.polygons.len() * 6);
+        now.starts.push([0, 0]);
         for (index, polygon) in faces.polygons.iter().enumerate() {
             let normal = faces.triangles(index).map(|[a, b, c]| (b - a).cross(c - a)).sum::<Vec3>();
             let normal = normal.try_normalize().unwrap_or(Vec3::Z);
-            let first = shape.len() as u32;
-            shape.extend(faces.corners(index).map(|position| [position, normal]));
+            let first = now.corners.len() as u32;
+            now.corners.extend(faces.corners(index).map(|position| [position, normal]));
             if polygon.vertices.len() > 4 {
-                shape.push([faces.mean(index), normal]);
+                now.corners.push([faces.mean(index), normal]);
             }
             indices.extend(faces.cut(index).flatten().map(|i| first + i as u32));
+            now.starts.push([now.corners.len() as u32, indices.len() as u32]);
         }
-        self.set(gpu, &shape, &indices)?;
-        self.now.clear();
-        self.set_colors(gpu, faces, &Vec::from_iter(faces.polygons.iter().map(|p| p.color)))
+        let before = std::mem::replace(&mut self.now, now);
+        let now = &self.now;
+        let mut same = before.count().min(now.count());
+        let alike =
+            |i: usize, j: usize| before.colors[i] == now.colors[j] && before.corners(i) == now.corners(j);
+        differences([before.count(), now.count()], alike, |only| match only {
+            Only::Before(i) => {
+                damage.add(before.outline(i), 0.0);
+                same = same.min(i);
+            }
+            Only::After(j) => {
+                damage.add(now.outline(j), 0.0);
+                same = same.min(j);
+            }
+        });
+        let [corner, index] = now.starts[same].map(|n| n as usize);
+        let limit = gpu.device.limits().max_buffer_size;
+        self.count = indices.len() as u32;
+        let shape = bytemuck::cast_slice(&now.corners);
+        self.shape.write_from(gpu, shape, corner * size_of::<[Vec3; 2]>(), limit)?;
+        self.indices.write_from(gpu, bytemuck::cast_slice(&indices), index * size_of::<u32>(), limit)?;
+        let colors = now.corner_colors(0..now.count());
+        self.colors.write_from(gpu, bytemuck::cast_slice(&colors), corner * size_of::<Vec4>(), limit)
     }
 
     /// Shows the polygons set before in other colours, [polygon_count].
-    pub fn set_colors(&mut self, gpu: &Gpu, faces: &Faces, colors: &[[f32; 3]]) -> Result<(), RenderError> {
-        let corners = |polygon: &Polygon| match polygon.vertices.len() {
-            n @ 0..5 => n,
-            n => n + 1,
-        };
-        let color = |c: &[f32; 3]| Vec3::from(*c).extend(1.0);
-        let each = || faces.polygons.iter().zip(colors);
-        let mut begin = 0;
-        for ((polygon, color), before) in each().zip(&self.now) {
-            let end = begin + 3 * triangles(polygon.vertices.len()) as u32;
-            if color != before {
-                match self.changed.last_mut().filter(|last| last.end == begin) {
-                    Some(last) => last.end = end,
-                    None => self.changed.push(begin..end),
-                }
-            }
-            begin = end;
+    pub fn set_colors(&mut self, gpu: &Gpu, colors: &[[f32; 3]], damage: &mut Damage) {
+        let count = self.now.count().min(colors.len());
+        let mut changed = count..0;
+        for polygon in (0..count).filter(|p| colors[*p] != self.now.colors[*p]) {
+            damage.add(self.now.outline(polygon), 0.0);
+            changed = changed.start.min(polygon)..polygon + 1;
         }
-        self.now.clear();
-        self.now.extend_from_slice(colors);
-        let colors: Vec<Vec4> = each().flat_map(|(p, c)| std::iter::repeat_n(color(c), corners(p))).collect();
-        self.colors.write(gpu, bytemuck::cast_slice(&colors), gpu.device.limits().max_buffer_size)
-    }
-
-    /// Forgets which polygons have changed: they have been drawn.
-    pub fn settle(&mut self) {
-        self.changed.clear();
+        if changed.is_empty() {
+            return;
+        }
+        self.now.colors[changed.clone()].copy_from_slice(&colors[changed.clone()]);
+        let first = self.now.starts[changed.start][0] as usize;
+        let colors = self.now.corner_colors(changed);
+        self.colors.overwrite(gpu, bytemuck::cast_slice(&colors), first * size_of::<Vec4>());
     }
 
     /// Replaces the triangles by those of bodies.
@@ -96,16 +136,12 @@ impl SurfaceMesh {
         let vertices = solids.vertices();
         let shape: Vec<_> = vertices.iter().map(|v| [v.position, v.normal]).collect();
         let colors: Vec<_> = vertices.iter().map(|v| Vec3::from(v.color).extend(v.opacity)).collect();
-        self.set(gpu, &shape, &Vec::from_iter(0..shape.len() as u32))?;
-        self.colors.write(gpu, bytemuck::cast_slice(&colors), gpu.device.limits().max_buffer_size)
-    }
-
-    /// Replaces positions with normals, and triangles of them.
-    fn set(&mut self, gpu: &Gpu, shape: &[[Vec3; 2]], indices: &[u32]) -> Result<(), RenderError> {
+        let indices = Vec::from_iter(0..shape.len() as u32);
         let limit = gpu.device.limits().max_buffer_size;
         self.count = indices.len() as u32;
-        self.shape.write(gpu, bytemuck::cast_slice(shape), limit)?;
-        self.indices.write(gpu, bytemuck::cast_slice(indices), limit)
+        self.shape.write(gpu, bytemuck::cast_slice(&shape), limit)?;
+        self.indices.write(gpu, bytemuck::cast_slice(&indices), limit)?;
+        self.colors.write(gpu, bytemuck::cast_slice(&colors), limit)
     }
 }
 
@@ -140,7 +176,7 @@ impl SurfacePipelines {
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: Some(wgpu::Face::Back),
             target: Some(COLOR_FORMAT),
-            // Equal depths pass: a face is drawn over itself when it changes colour.
+            // Equal depths pass: what comes later is in front, as of two faces in one place.
             depth: Some(GreaterEqual),
             samples,
         };
@@ -160,9 +196,16 @@ impl SurfacePipelines {
         Self { solids: solids.build(device), shadow: shadow.build(device), faces: faces.build(device) }
     }
 
-    /// Draws polygons from both sides.
-    pub fn draw_faces(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
-        Self::draw_with(&self.faces, pass, mesh);
+    /// Draws polygons from both sides, all or those that reach into a part of the picture.
+    pub fn draw_faces(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh, part: Option<&Part>) {
+        let Some(part) = part else {
+            Self::draw_with(&self.faces, pass, mesh);
+            return;
+        };
+        let polygons = &mesh.now;
+        let drawn = runs(polygons.count(), |p| part.is_reached_by(polygons.outline(p)));
+        let indices = drawn.into_iter().map(|r| polygons.starts[r.start][1]..polygons.starts[r.end][1]);
+        Self::draw_ranges(&self.faces, pass, mesh, indices);
     }
 
     /// Draws bodies from outside.
@@ -174,20 +217,15 @@ impl SurfacePipelines {
         Self::draw_with(&self.shadow, pass, mesh);
     }
 
-    /// Draws the polygons that have changed over what they were.
-    pub fn draw_changed(&self, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
-        Self::draw_ranges(&self.faces, pass, mesh, &mesh.changed);
-    }
-
     fn draw_with(pipeline: &wgpu::RenderPipeline, pass: &mut wgpu::RenderPass, mesh: &SurfaceMesh) {
-        Self::draw_ranges(pipeline, pass, mesh, std::slice::from_ref(&(0..mesh.count)));
+        Self::draw_ranges(pipeline, pass, mesh, std::iter::once(0..mesh.count));
     }
 
     fn draw_ranges(
         pipeline: &wgpu::RenderPipeline,
         pass: &mut wgpu::RenderPass,
         mesh: &SurfaceMesh,
-        ranges: &[Range<u32>],
+        ranges: impl Iterator<Item = Range<u32>>,
     ) {
         let buffers = [&mesh.shape, &mesh.colors, &mesh.indices].map(GrowingBuffer::buffer);
         if let ([Some(shape), Some(colors), Some(indices)], 1..) = (buffers, mesh.count) {
@@ -195,7 +233,7 @@ impl SurfacePipelines {
             pass.set_vertex_buffer(0, shape.slice(..));
             pass.set_vertex_buffer(1, colors.slice(..));
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-            ranges.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, 0..1));
+            ranges.for_each(|range| pass.draw_indexed(range, 0, 0..1));
         }
     }
 }

@@ -48,7 +48,9 @@ pub(crate) struct Start<'a> {
 
 /// What an element adds to the system.
 struct Contribution<const K: usize, const N: usize> {
+    /// Part of the matrix, still to be multiplied by the next.
     matrix: [[f64; N]; N],
+    by: f64,
     rhs: [f64; N],
     /// Force on its visits that counts for the normal force there [N].
     pull: [DVec3; K],
@@ -320,7 +322,7 @@ impl Sum<'_> {
                     }
                     let unknown = if j == 3 { sliding } else { j };
                     let first = places.block[a][b] as usize + places.column(b, unknown);
-                    let entry = |i: usize| add.matrix[size * a + i][size * b + j];
+                    let entry = |i: usize| add.by * add.matrix[size * a + i][size * b + j];
                     if row > column {
                         let rows = &mut self.value[first..first + 3];
                         for i in 0..3 {
@@ -360,7 +362,7 @@ fn segment(
     let speed = 0.5 * (point(&v, 0) + point(&v, 4)).length();
     let drag = air::drag(air, 2.0 * material.drawn_radius, speed);
     let by_mass = 1.0 + h * (material.mass_damping + drag / material.density);
-    let mut out = Contribution { matrix: [[0.0; 8]; 8], rhs: [0.0; 8], pull: [DVec3::ZERO; 2] };
+    let mut out = Contribution { matrix: [[0.0; 8]; 8], by: 1.0, rhs: [0.0; 8], pull: [DVec3::ZERO; 2] };
     for i in 0..8 {
         for j in 0..8 {
             out.matrix[i][j] = by_mass * mass[i][j] + h * h * stretched.hessian[i][j];
@@ -388,7 +390,8 @@ fn bend(term: &BendTerm, Start { materials, state, omega, step: h, .. }: Start) 
     let spin = bend.spin(&q, omega);
     let damped = h * (h + material.stiffness_damping);
     Contribution {
-        matrix: bent.hessian.map(|row| row.map(|k| damped * k)),
+        matrix: bent.hessian,
+        by: damped,
         rhs: std::array::from_fn(|i| damped * spin[i] - h * bent.gradient[i]),
         pull: [0, 4, 8].map(|at| -point(&bent.gradient, at)),
     }
@@ -400,7 +403,8 @@ fn wrap(term: &WrapTerm, Start { materials, state, step: h, .. }: Start) -> Cont
     let wrapped = term.wrap(material).expand(&term.stencil.points(state));
     let damped = h * (h + material.stiffness_damping);
     Contribution {
-        matrix: wrapped.hessian.map(|row| row.map(|k| damped * k)),
+        matrix: wrapped.hessian,
+        by: damped,
         rhs: wrapped.gradient.map(|g| -h * g),
         pull: [DVec3::ZERO; 4],
     }
@@ -414,7 +418,8 @@ fn shear(term: &ShearTerm, Start { materials, state, step: h, .. }: Start) -> Co
         h * (h + 0.5 * term.dyes.map(|d| materials[d as usize].stiffness_damping).iter().sum::<f64>());
     let [front, behind] = term.press(materials, state);
     Contribution {
-        matrix: sheared.hessian.map(|row| row.map(|k| damped * k)),
+        matrix: sheared.hessian,
+        by: damped,
         rhs: sheared.gradient.map(|g| -h * g),
         pull: [DVec3::ZERO, front, behind, DVec3::ZERO],
     }

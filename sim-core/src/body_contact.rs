@@ -23,10 +23,10 @@ use glam::DVec3;
 pub(crate) const MOST_DRAG: f64 = 100.0;
 
 /// Contact of a node with a body over (x), taken up whatever the sign of the gap; see the module.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct BodyContact<'a> {
     /// The body.
-    pub body: Placed<'a>,
+    pub body: &'a Placed<'a>,
     /// Distance that the node keeps from the surface [m].
     pub clearance: f64,
     /// k [N/m].
@@ -100,8 +100,8 @@ mod tests {
     fn derivatives() {
         // The mesh is left out: its normals jump at the borders of cells.
         for body in &bodies()[..4] {
+            let body = &Placed::new(body, 0.0, 1e-3);
             for q in samples::<3>(30) {
-                let body = Placed::new(body, 0.0, 1e-3);
                 check_element(&BodyContact { body, clearance: 0.01, stiffness: 10.0 }, &q);
             }
         }
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn drag_stays_in_the_friction_cone() {
         let [ground, ..] = bodies();
-        let body = Placed::new(&ground, 0.0, 1e-3);
+        let body = &Placed::new(&ground, 0.0, 1e-3);
         let contact = BodyContact { body, clearance: 0.0, stiffness: 10.0 };
         let (x, v) = (DVec3::new(0.0, 0.099, 0.0), DVec3::new(3.0, -1.0, 4.0));
         assert!((contact.drag(contact.gap(x), v, 1e-3, 1e-3) * 5.0 - 0.3 * 10.0 * 1e-3).abs() < 1e-12);

@@ -6,9 +6,10 @@
 //! the yarn have moved.
 
 use glam::DVec3;
-use std::collections::HashMap;
+use smallvec::SmallVec;
+use std::sync::Arc;
 use stitch_mesh::ids::{FaceId, NodeId, VisitId};
-use stitch_mesh::yarn_net::{YarnNet, YarnState};
+use stitch_mesh::yarn_net::{Visit, YarnNet, YarnState};
 
 /// The state of `new_net` that continues `old_state` of `old_net`. `old_face` tells which face of the old mesh a face of the
 /// new one was, if any; nodes outside of the mesh (cast-on, bind-off, tails) are carried over if there are as many as before.
@@ -19,8 +20,12 @@ pub fn carry_over(
     old_face: impl Fn(FaceId) -> Option<FaceId>,
 ) -> YarnState {
     // Stacked otherwise at some nodes, nothing more: everything is where it was.
-    let runs = |net: &YarnNet| net.visits.iter().map(|v| (v.node, v.yarn, v.u.to_bits())).collect::<Vec<_>>();
-    if old_net.nodes.len() == new_net.nodes.len() && runs(old_net) == runs(new_net) {
+    let runs_alike = |(a, b): (&Visit, &Visit)| (a.node, a.yarn, a.u) == (b.node, b.yarn, b.u);
+    let alike = old_net.nodes.len() == new_net.nodes.len()
+        && old_net.visits.len() == new_net.visits.len()
+        && (Arc::ptr_eq(&old_net.visits, &new_net.visits)
+            || old_net.visits.iter().zip(&*new_net.visits).all(runs_alike));
+    if alike {
         return old_state.clone();
     }
     let mut state = new_net.laid_state();
@@ -53,33 +58,67 @@ fn same_nodes(
     new_net: &YarnNet,
     old_face: impl Fn(FaceId) -> Option<FaceId>,
 ) -> Vec<(NodeId, NodeId)> {
-    let by_face = |net: &YarnNet| {
-        let mut nodes: HashMap<Option<FaceId>, Vec<NodeId>> = HashMap::new();
-        for (i, node) in net.nodes.iter().enumerate() {
-            nodes.entry(node.face).or_default().push(NodeId::new(i));
-        }
-        nodes
-    };
-    let old = by_face(old_net);
-    let mut pairs = Vec::new();
-    for (face, new_nodes) in by_face(new_net) {
+    let [old, new] = [old_net, new_net].map(NodesOf::net);
+    let visits = |net: &YarnNet, n: NodeId| net.nodes[n.index()].visits.len();
+    let mut pairs = Vec::with_capacity(new_net.nodes.len());
+    for (face, nodes) in new.all() {
         let was = match face {
             Some(face) => old_face(face).map(Some),
             None => Some(None),
         };
-        let Some(old_nodes) = was.and_then(|f| old.get(&f)).filter(|o| o.len() == new_nodes.len()) else {
-            continue;
-        };
-        let visits = |net: &YarnNet, n: NodeId| net.nodes[n.index()].visits.len();
-        let same = |(n, o): &(NodeId, NodeId)| visits(new_net, *n) == visits(old_net, *o);
-        pairs.extend(new_nodes.into_iter().zip(old_nodes.iter().copied()).filter(same));
+        let Some(before) = was.map(|f| old.face(f)).filter(|o| o.len() == nodes.len()) else { continue };
+        let both = nodes.iter().copied().zip(before.iter().copied());
+        pairs.extend(both.filter(|(n, o)| visits(new_net, *n) == visits(old_net, *o)));
     }
     pairs
 }
 
+/// The nodes of a net, face by face, then those that lie in none.
+struct NodesOf {
+    /// Where those of each face begin, where those of none begin, and the end.
+    starts: Vec<u32>,
+    nodes: Vec<NodeId>,
+}
+
+impl NodesOf {
+    fn net(net: &YarnNet) -> Self {
+        let faces = net.nodes.iter().filter_map(|n| n.face).max().map_or(0, |f| f.index() + 1);
+        let place = |face: Option<FaceId>| face.map_or(faces, FaceId::index);
+        let mut starts = vec![0u32; faces + 2];
+        net.nodes.iter().for_each(|n| starts[place(n.face) + 1] += 1);
+        (0..=faces).for_each(|f| starts[f + 1] += starts[f]);
+        let mut next = starts.clone();
+        let mut nodes = vec![NodeId(0); net.nodes.len()];
+        for (n, node) in net.nodes.iter().enumerate() {
+            let at = &mut next[place(node.face)];
+            nodes[*at as usize] = NodeId::new(n);
+            *at += 1;
+        }
+        Self { starts, nodes }
+    }
+
+    fn at(&self, place: usize) -> &[NodeId] {
+        let range = self.starts.get(place).zip(self.starts.get(place + 1));
+        range.map_or(&[], |(begin, end)| &self.nodes[*begin as usize..*end as usize])
+    }
+
+    fn face(&self, face: Option<FaceId>) -> &[NodeId] {
+        let none = self.starts.len() - 2;
+        match face {
+            Some(face) if face.index() >= none => &[],
+            face => self.at(face.map_or(none, FaceId::index)),
+        }
+    }
+
+    fn all(&self) -> impl Iterator<Item = (Option<FaceId>, &[NodeId])> {
+        let none = self.starts.len() - 2;
+        (0..=none).map(move |f| ((f < none).then(|| FaceId::new(f)), self.at(f)))
+    }
+}
+
 /// The visits of a node in the order of the yarn, which turning a knit into a purl leaves as it is.
-fn along_yarn(net: &YarnNet, node: NodeId) -> Vec<VisitId> {
-    let mut visits = net.nodes[node.index()].visits.to_vec();
+fn along_yarn(net: &YarnNet, node: NodeId) -> SmallVec<[VisitId; 3]> {
+    let mut visits = net.nodes[node.index()].visits.clone();
     visits.sort_unstable();
     visits
 }
@@ -127,7 +166,6 @@ fn slide(net: &YarnNet, state: &mut YarnState, slid: &[f64]) {
 mod tests {
     use super::*;
     use crate::{Material, Scene, Simulator};
-    use std::sync::Arc;
     use stitch_mesh::edge_counts::StitchSize;
     use stitch_mesh::lay::lay;
     use stitch_mesh::pieces::rectangle;

@@ -1,23 +1,17 @@
 //! A closed mesh as a body: its signed distance on a grid.
 //!
 //! # Theory
-//! The distance of a point is that to the nearest point of the triangles, negative inside. Its sign is that of (x − p)·n with p
-//! the nearest point and n the pseudo-normal there: the triangle's own, the sum of both at an edge, the sum weighted by
-//! angles at a vertex (Bærentzen and Aanæs, *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005). For a
-//! closed mesh without self-intersections that sign is exact.
-//!
-//! Sampled at the corners of cubic cells and interpolated trilinearly, the error is about cell² × curvature/8 on smooth parts and
+//! The distance to the surface (`closed_surface.rs`) is sampled at the corners of cubic cells and interpolated trilinearly: the error is about cell² × curvature/8 on smooth parts and
 //! a part of a cell at edges, which come out rounded. The normal is the gradient of the interpolation.
 //!
 //! # Practice
 //! The grid goes two cells beyond the mesh. From outside of it the distance is that to the grid plus that at the nearest point
 //! of the grid: never less than the true one, and fabric that far away does not touch.
 
-use crate::bvh::{Bvh, nearest_on_triangle};
+use crate::closed_surface::{ClosedMeshError, Surface, Triangles};
 use glam::{DVec3, UVec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Cells along the longest side of a mesh.
@@ -26,35 +20,12 @@ const CELLS: f64 = 64.0;
 /// Cells between the mesh and the border of the grid.
 const MARGIN: f64 = 2.0;
 
-/// A mesh that cannot be a body.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ClosedMeshError {
-    /// No triangle, or none with an area.
-    #[error("the mesh has no volume")]
-    Empty,
-    /// A triangle that names a vertex that is not there, or a vertex that is not finite.
-    #[error("triangle {0} has a vertex that is missing or not finite")]
-    Vertex(usize),
-    /// An edge without exactly one triangle on each side.
-    #[error("the mesh is not closed at the edge {0}–{1}")]
-    Open(u32, u32),
-}
-
 /// A closed mesh with its signed distance.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Triangles", into = "Triangles")]
 pub struct ClosedMesh {
     triangles: Arc<Triangles>,
     field: Arc<Field>,
-}
-
-/// Triangles that face outwards.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Triangles {
-    /// Corners [m].
-    pub positions: Vec<DVec3>,
-    /// Three corners each.
-    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Distances at the corners of cells.
@@ -95,22 +66,10 @@ impl ClosedMesh {
     /// # Errors
     /// Where the mesh is not closed.
     pub fn new(mut mesh: Triangles) -> Result<Self, ClosedMeshError> {
-        let finite = |v: &u32| mesh.positions.get(*v as usize).is_some_and(|p| p.is_finite());
-        if let Some(bad) = mesh.triangles.iter().position(|t| !t.iter().all(finite)) {
-            return Err(ClosedMeshError::Vertex(bad));
-        }
-        let at = |v: u32| mesh.positions[v as usize];
-        let six_volumes = |[a, b, c]: [u32; 3]| at(a).dot(at(b).cross(at(c)));
-        let volume: f64 = mesh.triangles.iter().map(|t| six_volumes(*t)).sum();
-        if volume == 0.0 {
-            return Err(ClosedMeshError::Empty);
-        }
-        if volume < 0.0 {
-            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
-        let normals = PseudoNormals::new(&mesh)?;
-        let field = Field::new(&mesh, &normals);
-        Ok(Self { triangles: Arc::new(mesh), field: Arc::new(field) })
+        mesh.face_outwards()?;
+        let surface = Surface::new(mesh)?;
+        let field = Field::new(&surface);
+        Ok(Self { triangles: Arc::new(surface.mesh), field: Arc::new(field) })
     }
 
     /// Its triangles.
@@ -125,65 +84,21 @@ impl ClosedMesh {
         (*low, *cell, *corners, distance)
     }
 
+    /// The box around the grid [m].
+    pub(crate) fn bounds(&self) -> [DVec3; 2] {
+        let Field { low, cell, corners, .. } = &*self.field;
+        [*low, *low + *cell * (corners - 1).as_dvec3()]
+    }
+
     /// Signed distance of `x` from the surface, negative inside [m], and the unit normal there.
     pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
         self.field.sample(x)
     }
 }
 
-/// Normals of triangles, edges and vertices that tell inside from outside.
-struct PseudoNormals {
-    of_triangle: Vec<DVec3>,
-    /// By their ends, the lower first.
-    of_edge: HashMap<[u32; 2], DVec3>,
-    of_vertex: Vec<DVec3>,
-}
-
-impl PseudoNormals {
-    fn new(mesh: &Triangles) -> Result<Self, ClosedMeshError> {
-        let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
-        let normal = |t| {
-            let [a, b, c] = corners(t);
-            (b - a).cross(c - a).normalize_or_zero()
-        };
-        let of_triangle: Vec<DVec3> = mesh.triangles.iter().map(normal).collect();
-        let mut sides: HashMap<[u32; 2], (DVec3, i32, u32)> = HashMap::new();
-        let mut of_vertex = vec![DVec3::ZERO; mesh.positions.len()];
-        for (t, n) in mesh.triangles.iter().zip(&of_triangle) {
-            for i in 0..3 {
-                let [a, b, c] = [t[i], t[(i + 1) % 3], t[(i + 2) % 3]];
-                let side = sides.entry([a.min(b), a.max(b)]).or_default();
-                side.0 += *n;
-                side.1 += if a < b { 1 } else { -1 };
-                side.2 += 1;
-                let [p, q, r] = [a, b, c].map(|v| mesh.positions[v as usize]);
-                of_vertex[a as usize] += (q - p).angle_between(r - p) * *n;
-            }
-        }
-        // Each edge is passed once each way.
-        if let Some(([a, b], _)) = sides.iter().find(|(_, (_, ways, count))| *ways != 0 || *count != 2) {
-            return Err(ClosedMeshError::Open(*a, *b));
-        }
-        let of_edge = sides.into_iter().map(|(ends, (n, ..))| (ends, n)).collect();
-        Ok(Self { of_triangle, of_edge, of_vertex })
-    }
-
-    /// The normal at a point of triangle `t` with these barycentric coordinates.
-    fn at(&self, mesh: &Triangles, t: usize, weights: [f64; 3]) -> DVec3 {
-        let corners = mesh.triangles[t];
-        let mut touched = (0..3).filter(|i| weights[*i] > 1e-9).map(|i| corners[i]);
-        match [touched.next(), touched.next(), touched.next()] {
-            [Some(v), None, _] => self.of_vertex[v as usize],
-            [Some(a), Some(b), None] => self.of_edge[&[a.min(b), a.max(b)]],
-            _ => self.of_triangle[t],
-        }
-    }
-}
-
 impl Field {
-    fn new(mesh: &Triangles, normals: &PseudoNormals) -> Self {
-        let corner = |t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
-        let tree = Bvh::new(mesh.triangles.len(), corner);
+    fn new(surface: &Surface) -> Self {
+        let mesh = &surface.mesh;
         let all = || mesh.triangles.iter().flatten().map(|v| mesh.positions[*v as usize]);
         let (low, high) =
             all().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
@@ -193,16 +108,7 @@ impl Field {
         let distance = |index: usize| {
             let (index, [nx, ny]) = (index as u32, [corners.x, corners.y]);
             let place = UVec3::new(index % nx, index / nx % ny, index / nx / ny);
-            let x = low + cell * place.as_dvec3();
-            let measure = |t: usize| {
-                let (points, weights) = (corner(t), nearest_on_triangle(corner(t), x));
-                let nearest = weights[0] * points[0] + weights[1] * points[1] + weights[2] * points[2];
-                (x.distance_squared(nearest), (nearest, weights))
-            };
-            tree.nearest(x, measure).map_or(f32::INFINITY, |(square, t, (nearest, weights))| {
-                let outward = (x - nearest).dot(normals.at(mesh, t, weights));
-                square.sqrt().copysign(outward) as f32
-            })
+            surface.nearest(low + cell * place.as_dvec3()).map_or(f32::INFINITY, |n| n.distance as f32)
         };
         let count = corners.element_product() as usize;
         Self { low, cell, corners, distance: (0..count).into_par_iter().map(distance).collect() }

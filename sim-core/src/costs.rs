@@ -15,6 +15,15 @@ pub struct Costs {
     pub residual: f64,
 }
 
+/// What the solver of a simulator has to do, whatever the time it takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Memory read for one iteration: the factor forwards and backwards, and the matrix once [bytes].
+    pub iteration_bytes: u64,
+    /// Operations for one factorisation, a multiplication and an addition being two.
+    pub factorisation_operations: u64,
+}
+
 /// The names of the stages of [`Costs::stages`], in the order of [`Stage`].
 pub const STAGES: [&str; 6] = ["assembly", "friction", "contacts", "factorisation", "iterations", "rest"];
 

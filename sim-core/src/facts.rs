@@ -1,5 +1,6 @@
 //! Figures that tell how a simulation is doing.
 
+use crate::body::Placed;
 use crate::clearance::least_distance;
 use crate::curves::curves;
 use crate::forces::HoldFact;
@@ -48,9 +49,10 @@ pub(crate) fn measure(
         r.length().hypot(term.climb) / (q[7] - q[3]) - 1.0
     };
     let strains = model.segments.iter().map(strain);
+    let bodies: Vec<Placed<'_>> = scene.bodies.iter().map(|b| Placed::new(b, time_s, 0.0)).collect();
     let depth = |(x, clearance): (&DVec3, f64)| {
-        let gaps = scene.bodies.iter().map(|b| clearance - b.distance(b.pose(time_s).undo(*x)).0);
-        gaps.fold(0.0, f64::max)
+        let near = bodies.iter().filter(|b| b.is_near([*x, *x], clearance));
+        near.map(|b| clearance - b.distance(*x).0).fold(0.0, f64::max)
     };
     let deepest = state.position.iter().zip(clearances(model, materials)).map(depth).fold(0.0, f64::max);
     let drawn = curves(&model.net, state, materials);

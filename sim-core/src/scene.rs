@@ -1,6 +1,7 @@
 //! What surrounds the fabric: gravity, air, bodies, pins, clamps and the time step. Y is up.
 
 use crate::body::Body;
+use crate::mesh_sequence::MeshSequence;
 use crate::motion::Motion;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -186,9 +187,9 @@ impl Scene {
 
     /// Whether everything in `other` moves as it does here, so that time may go on from one to the other.
     pub fn moves_like(&self, other: &Self) -> bool {
-        fn motions(scene: &Scene) -> impl Iterator<Item = Option<&Motion>> {
-            let clamps = scene.clamps.iter().map(|c| Some(&c.motion));
-            scene.bodies.iter().map(Body::motion).chain(clamps)
+        fn motions(scene: &Scene) -> impl Iterator<Item = (Option<&Motion>, Option<&MeshSequence>)> {
+            let clamps = scene.clamps.iter().map(|c| (Some(&c.motion), None));
+            scene.bodies.iter().map(|b| (b.motion(), b.sequence())).chain(clamps)
         }
         motions(self).eq(motions(other))
     }

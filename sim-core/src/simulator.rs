@@ -1,6 +1,6 @@
 //! The simulator: a net, its state, and time going by.
 
-use crate::costs::Costs;
+use crate::costs::{Costs, Work};
 use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
@@ -359,9 +359,19 @@ impl Simulator {
         self.stepper.solver.method()
     }
 
+    /// What its solver has to do.
+    pub fn work(&self) -> Work {
+        self.stepper.solver.work(&self.stepper.system.matrix)
+    }
+
     /// What its steps have cost since it began or yarn was last cut.
     pub fn costs(&self) -> Costs {
         self.stepper.costs
+    }
+
+    /// Counts what its steps cost from now on.
+    pub fn reset_costs(&mut self) {
+        self.stepper.costs = Costs::default();
     }
 
     /// What there is to report of the simulation so far. Looks for the closest yarns, which takes about as long as a step.

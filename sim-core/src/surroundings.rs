@@ -1,6 +1,7 @@
 //! What a scene does to the nodes of a fabric in one step: bodies, pins and clamps.
 //!
-//! Everything is taken where it is at the end of the step.
+//! Everything is taken where it is at the end of the step. Nodes that were laid one after another lie near each other, so the boxes
+//! around runs of them tell which may touch a body at all.
 
 use crate::body::Placed;
 use crate::body_contact::{BodyContact, Touching};
@@ -13,13 +14,43 @@ use stitch_mesh::yarn_net::YarnState;
 /// weight, at 1e4 a corner that touches down alone upsets the conditioning.
 pub(crate) const BODY_STIFFNESS: f64 = 100.0;
 
+/// Nodes in a run that is told from a body by the box around it.
+const RUN: usize = 64;
+
+/// Nodes of a run, the box around them, and how far from it they may reach in a step.
+struct Run {
+    nodes: std::ops::Range<usize>,
+    bounds: [DVec3; 2],
+    /// [m]
+    reach: f64,
+}
+
 impl Stepper {
+    /// The nodes in runs, with what each keeps off and how far it flies in a step of `h` [s].
+    fn runs(&self, state: &YarnState, h: f64) -> Vec<Run> {
+        let count = state.position.len();
+        let run = |first: usize| {
+            let nodes = first..(first + RUN).min(count);
+            let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+            let mut reach: f64 = 0.0;
+            for node in nodes.clone() {
+                let x = state.position[node];
+                bounds = [bounds[0].min(x), bounds[1].max(x)];
+                reach = reach.max(self.clearances[node] + h * state.velocity[node].length());
+            }
+            Run { nodes, bounds, reach }
+        };
+        (0..count).step_by(RUN).map(run).collect()
+    }
+
     /// Adds the bodies as they are at the end of the step of `h` from `time_s` on [s].
     pub fn add_bodies(&mut self, state: &YarnState, scene: &Scene, time_s: f64, h: f64) -> Vec<Touching> {
         let mut touching = Vec::new();
+        let runs = if scene.bodies.is_empty() { Vec::new() } else { self.runs(state, h) };
         for (index, body) in scene.bodies.iter().enumerate() {
-            let body = Placed::new(body, time_s, h);
-            for node in 0..state.position.len() {
+            let body = &Placed::new(body, time_s, h);
+            let near = runs.iter().filter(|run| body.is_near(run.bounds, run.reach));
+            for node in near.flat_map(|run| run.nodes.clone()) {
                 let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
                 let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
                 let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
@@ -29,7 +60,9 @@ impl Stepper {
                     continue;
                 }
                 self.add_point(node, &contact, x, h);
-                let drag = contact.drag((gap, normal), v - surface, mass, h);
+                // It is pressed as deep as it is in the surface now, not as this leaves it or comes upon it in the step.
+                let pressed = gap + h * surface.dot(normal);
+                let drag = contact.drag((pressed, normal), v - surface, mass, h);
                 let n = normal.to_array();
                 self.add_block(node, |i, j| h * drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
                 self.push(node, h * drag * (surface - surface.dot(normal) * normal));

@@ -6,7 +6,9 @@ mod common;
 
 use common::{WIDTH, run, stockinette};
 use glam::DVec3;
-use sim_core::{Body, Clamp, ClosedMesh, Key, Material, Motion, Pin, Scene, Simulator, Triangles};
+use sim_core::{
+    Body, Clamp, ClosedMesh, Frames, Key, Material, MeshSequence, Motion, Pin, Scene, Simulator, Triangles,
+};
 use std::sync::Arc;
 use stitch_mesh::yarn_net::YarnNet;
 
@@ -166,6 +168,48 @@ fn fabric_lies_on_a_mesh() {
     let clearance = 2.0 * simulator.materials().base.drawn_radius;
     let lowest = simulator.state().position.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
     assert!((lowest - clearance).abs() < 0.3e-3, "lies at {lowest}");
+}
+
+/// A table that walks to the right on its frames and lies down meanwhile takes along what lies on it.
+#[test]
+fn fabric_is_carried_by_a_mesh_that_changes_its_shape() {
+    let net = stockinette(5, 5);
+    let mut state = net.laid_state();
+    let low = net.nodes.iter().map(|n| n.position.z).fold(f64::INFINITY, f64::min);
+    state.position.iter_mut().for_each(|x| *x = DVec3::new(x.x, x.z - low + 2e-3, x.y));
+    let middle = state.position.iter().sum::<DVec3>() / state.position.len() as f64;
+    state.position.iter_mut().for_each(|x| *x -= middle.with_y(0.0));
+    // Its top stays level and goes 0.1 m/s to the right and 0.02 m/s down; its feet stay.
+    let frame = |i: usize| {
+        let t = i as f64 * 0.04;
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            let moved = if i >> 1 & 1 == 1 { DVec3::new(0.1, -0.02, 0.0) * t } else { DVec3::ZERO };
+            DVec3::new(0.025, 0.02, 0.02) * DVec3::new(sign(0), sign(1), sign(2)) - DVec3::Y * 0.02 + moved
+        };
+        (0..8).map(corner).collect()
+    };
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let frames = Frames {
+        triangles: quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect(),
+        positions: (0..10).map(frame).collect(),
+        interval_s: 0.04,
+        repeats: false,
+    };
+    let table = |friction| Body::Sequence { frames: MeshSequence::new(frames.clone()).unwrap(), friction };
+    let carried = |friction: f64| {
+        let scene = Scene { bodies: vec![table(friction)], ..Scene::default() };
+        let material = Material::for_loop_width(WIDTH);
+        let mut simulator = Simulator::new(&net, material, scene, state.clone()).unwrap();
+        run(&mut simulator, 0.3);
+        let facts = simulator.facts();
+        assert!(facts.max_penetration_mm < 0.2, "{facts:?}");
+        mean_velocity(&simulator)
+    };
+    let (rough, smooth) = (carried(0.5), carried(0.0));
+    println!("{rough} with friction, {smooth} without");
+    assert!((rough.x - 0.1).abs() < 0.01 && (rough.y + 0.02).abs() < 5e-3);
+    assert!(smooth.x.abs() < 0.03, "without friction the table goes away under it");
 }
 
 #[test]

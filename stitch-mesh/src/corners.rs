@@ -1,6 +1,8 @@
 //! The corners of all faces, vertex by vertex: from these validation and the half-edge mesh find neighbours without hashing,
 //! in time linear in the number of corners.
 
+use rayon::prelude::*;
+
 /// Where a face passes a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner {
@@ -22,9 +24,9 @@ pub(crate) struct Corners {
 
 impl Corners {
     /// Sorts the corners of `faces`, whose vertices are all below `vertex_count`.
-    pub fn new(vertex_count: usize, faces: &[Vec<u32>]) -> Self {
+    pub fn new(vertex_count: usize, faces: &[impl AsRef<[u32]>]) -> Self {
         let mut starts = vec![0u32; vertex_count + 1];
-        for v in faces.iter().flatten() {
+        for v in faces.iter().flat_map(AsRef::as_ref) {
             starts[*v as usize + 1] += 1;
         }
         for v in 0..vertex_count {
@@ -34,7 +36,7 @@ impl Corners {
         let nothing = Corner { before: 0, after: 0, half_edge: 0 };
         let mut corners = vec![nothing; starts[vertex_count] as usize];
         let mut half_edge = 0;
-        for vertices in faces {
+        for vertices in faces.iter().map(AsRef::as_ref) {
             let n = vertices.len();
             for i in 0..n {
                 let at = &mut filled[vertices[i] as usize];
@@ -60,7 +62,7 @@ impl Corners {
 
     /// Whether two half-edges lead the same way between the same vertices: then the mesh is not manifold there.
     pub fn has_doubles(&self) -> bool {
-        (0..self.starts.len() as u32 - 1).any(|v| {
+        (0..self.starts.len() as u32 - 1).into_par_iter().any(|v| {
             let around = self.at(v);
             around.iter().enumerate().any(|(i, c)| around[..i].iter().any(|d| d.after == c.after))
         })

@@ -7,7 +7,7 @@
 use crate::corners::Corners;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use crate::validate::MeshError;
-use crate::validate::{MeshProblem, area_vector, position_problems, validate};
+use crate::validate::{MeshProblem, area_vector, check, position_problems};
 use glam::DVec3;
 use rayon::prelude::*;
 use smallvec::SmallVec;
@@ -40,30 +40,27 @@ impl PolygonMesh {
     /// Builds the mesh from vertex positions [m] and faces (vertex indices, counter-clockwise seen from the front).
     ///
     /// # Errors
-    /// Everything that [`validate`] finds.
-    pub fn new(positions: Vec<DVec3>, faces: &[Vec<u32>]) -> Result<Self, MeshError> {
-        let problems = validate(&positions, faces);
-        if !problems.is_empty() {
-            return Err(MeshError(problems));
-        }
-        Ok(Self::build(positions, faces))
+    /// Everything that [`crate::validate::validate`] finds.
+    pub fn new(positions: Vec<DVec3>, faces: &[impl AsRef<[u32]> + Sync]) -> Result<Self, MeshError> {
+        let corners = check(&positions, faces).map_err(MeshError)?;
+        Ok(Self::build(positions, faces, corners))
     }
 
     /// The mesh without faces, where nothing is knitted.
     pub(crate) fn empty() -> Self {
-        Self::build(Vec::new(), &[])
+        let faces = [[0; 0]; 0];
+        Self::build(Vec::new(), &faces, Corners::new(0, &faces))
     }
 
     /// Builds the mesh of faces in which nothing is wrong.
-    fn build(positions: Vec<DVec3>, faces: &[Vec<u32>]) -> Self {
-        let corners = Corners::new(positions.len(), faces);
-        let count = faces.iter().map(Vec::len).sum();
+    fn build(positions: Vec<DVec3>, faces: &[impl AsRef<[u32]>], corners: Corners) -> Self {
+        let count = faces.iter().map(|f| f.as_ref().len()).sum();
         let mut half_edges: Vec<HalfEdge> = Vec::with_capacity(count);
         let mut edges: Vec<HalfEdgeId> = Vec::with_capacity(count / 2);
         let mut face_starts = Vec::with_capacity(faces.len() + 1);
         face_starts.push(0);
         let mut border_from = vec![None; positions.len()];
-        for (face, vertices) in faces.iter().enumerate() {
+        for (face, vertices) in faces.iter().map(AsRef::as_ref).enumerate() {
             for (i, &a) in vertices.iter().enumerate() {
                 let this = HalfEdgeId::new(half_edges.len());
                 let b = vertices[(i + 1) % vertices.len()];

@@ -82,7 +82,7 @@ pub fn from_rows(rows: &[Vec<Stitch>], size: StitchSize) -> Result<StitchMesh, P
         (0..=*count).map(move |i| DVec3::new((i as f64 - half) * size.width, y, 0.0))
     };
     let positions = loops.iter().enumerate().flat_map(place).collect();
-    let mut faces = Vec::new();
+    let mut faces: Vec<Vec<u32>> = Vec::new();
     for (level, row) in rows.iter().enumerate() {
         let (mut below, mut above) = (first[level], first[level + 1]);
         for stitch in row {

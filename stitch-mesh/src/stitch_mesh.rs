@@ -177,6 +177,12 @@ impl StitchMesh {
         Arc::ptr_eq(&self.mesh, &other.mesh) || self.mesh == other.mesh
     }
 
+    /// Whether this is a fabric that `other` was edited from, or the other way round, without changing any face: ids, rows and
+    /// numbers of loops are the same.
+    pub fn shares_mesh_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+    }
+
     /// All stitches, [face_count].
     pub fn stitches(&self) -> &[Stitch] {
         &self.stitches

@@ -3,6 +3,7 @@
 use crate::corners::Corners;
 use crate::ids::{FaceId, VertexId};
 use glam::DVec3;
+use rayon::prelude::*;
 use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
@@ -85,13 +86,21 @@ fn describe(problems: &[MeshProblem]) -> String {
 }
 
 /// Everything wrong with a mesh given as positions [m] and faces. Empty when [`crate::mesh::PolygonMesh::new`] succeeds.
-pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+pub fn validate(positions: &[DVec3], faces: &[impl AsRef<[u32]> + Sync]) -> Vec<MeshProblem> {
+    check(positions, faces).err().unwrap_or_default()
+}
+
+/// The corners of a mesh in which nothing is wrong, or else all that is.
+pub(crate) fn check(
+    positions: &[DVec3],
+    faces: &[impl AsRef<[u32]> + Sync],
+) -> Result<Corners, Vec<MeshProblem>> {
     let mut problems = Vec::new();
     if faces.is_empty() {
         problems.push(MeshProblem::Empty);
     }
     problems.extend(not_finite(positions));
-    for (f, vertices) in faces.iter().enumerate() {
+    for (f, vertices) in faces.iter().map(AsRef::as_ref).enumerate() {
         let face = FaceId::new(f);
         let missing = vertices.iter().find(|v| **v as usize >= positions.len());
         if let Some(&vertex) = missing {
@@ -99,7 +108,7 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
         }
     }
     if !problems.is_empty() {
-        return problems; // what follows looks vertices up and measures them
+        return Err(problems); // what follows looks vertices up and measures them
     }
     problems.extend(degenerate_faces(positions, faces));
     let corners = Corners::new(positions.len(), faces);
@@ -109,13 +118,13 @@ pub fn validate(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
     if problems.is_empty() {
         problems = vertex_problems(positions.len(), &corners);
     }
-    problems
+    if problems.is_empty() { Ok(corners) } else { Err(problems) }
 }
 
 /// What can be wrong with a mesh after its vertices have moved.
-pub(crate) fn position_problems(positions: &[DVec3], faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+pub(crate) fn position_problems(positions: &[DVec3], faces: &[impl AsRef<[u32]> + Sync]) -> Vec<MeshProblem> {
     let problems: Vec<MeshProblem> = not_finite(positions).collect();
-    if problems.is_empty() { degenerate_faces(positions, faces).collect() } else { problems }
+    if problems.is_empty() { degenerate_faces(positions, faces) } else { problems }
 }
 
 fn not_finite(positions: &[DVec3]) -> impl Iterator<Item = MeshProblem> {
@@ -123,11 +132,12 @@ fn not_finite(positions: &[DVec3]) -> impl Iterator<Item = MeshProblem> {
     vertices.map(|(v, _)| MeshProblem::NotFinite(VertexId::new(v)))
 }
 
-fn degenerate_faces(positions: &[DVec3], faces: &[Vec<u32>]) -> impl Iterator<Item = MeshProblem> {
-    faces.iter().enumerate().filter_map(|(f, vertices)| {
+fn degenerate_faces(positions: &[DVec3], faces: &[impl AsRef<[u32]> + Sync]) -> Vec<MeshProblem> {
+    let problem = |(f, vertices): (usize, &[u32])| {
         let why = degenerate(positions, vertices)?;
         Some(MeshProblem::DegenerateFace { face: FaceId::new(f), why })
-    })
+    };
+    faces.par_iter().map(AsRef::as_ref).enumerate().filter_map(problem).collect()
 }
 
 fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
@@ -151,11 +161,11 @@ pub fn area_vector(points: &[DVec3]) -> DVec3 {
     points.windows(2).map(|w| (w[0] - origin).cross(w[1] - origin)).sum::<DVec3>() * 0.5
 }
 
-fn edge_problems(faces: &[Vec<u32>]) -> Vec<MeshProblem> {
+fn edge_problems(faces: &[impl AsRef<[u32]>]) -> Vec<MeshProblem> {
     // Uses of every edge: the face, and whether it runs from the smaller vertex to the larger. Ordered, so that the same
     // mesh is always described in the same words.
     let mut uses: BTreeMap<(u32, u32), Vec<(usize, bool)>> = BTreeMap::new();
-    for (f, vertices) in faces.iter().enumerate() {
+    for (f, vertices) in faces.iter().map(AsRef::as_ref).enumerate() {
         for (i, &a) in vertices.iter().enumerate() {
             let b = vertices[(i + 1) % vertices.len()];
             uses.entry((a.min(b), a.max(b))).or_default().push((f, a < b));
@@ -181,13 +191,10 @@ fn edge_problems(faces: &[Vec<u32>]) -> Vec<MeshProblem> {
 /// Isolated vertices and vertices with several fans. The edges are manifold already, so the faces around a vertex form
 /// chains: as many as there are corners less inner edges, or a single closed fan.
 fn vertex_problems(count: usize, corners: &Corners) -> Vec<MeshProblem> {
-    let mut problems = Vec::new();
-    for vertex in (0..count).map(VertexId::new) {
+    let problem = |vertex: usize| {
+        let vertex = VertexId::new(vertex);
         let corners = corners.at(vertex.0);
-        let Some(first) = corners.first() else {
-            problems.push(MeshProblem::IsolatedVertex(vertex));
-            continue;
-        };
+        let Some(first) = corners.first() else { return Some(MeshProblem::IsolatedVertex(vertex)) };
         // Walk both ways from the first corner; a single fan reaches all of them. Around the vertex, every corner joins the
         // edge it comes in on with the edge it goes out on.
         let mut reached = 1;
@@ -201,11 +208,9 @@ fn vertex_problems(count: usize, corners: &Corners) -> Vec<MeshProblem> {
                 (at, reached) = (c.after, reached + 1);
             }
         }
-        if reached != corners.len() {
-            problems.push(MeshProblem::NonManifoldVertex(vertex));
-        }
-    }
-    problems
+        (reached != corners.len()).then_some(MeshProblem::NonManifoldVertex(vertex))
+    };
+    (0..count).into_par_iter().filter_map(problem).collect()
 }
 
 #[cfg(test)]
@@ -227,7 +232,7 @@ mod tests {
     #[test]
     fn every_problem_is_named() {
         let (positions, faces) = grid();
-        assert_eq!(validate(&positions, &[]), [MeshProblem::Empty]);
+        assert_eq!(validate(&positions, &[[0u32; 0]; 0]), [MeshProblem::Empty]);
 
         let mut bad = positions.clone();
         bad[4].y = f64::NAN;

@@ -46,7 +46,7 @@ fn hem_and_collar(project: &Project) -> [f64; 2] {
     let gravity = project.scene.gravity * (6e-3 / project.size.width);
     let scene = Scene { gravity, ..project.scene.clone() };
     let state = (*fabric.state()).clone();
-    let mut simulator = Simulator::new(&fabric.net, project.materials.clone(), scene, state).unwrap();
+    let mut simulator = Simulator::new(fabric.net(), project.materials.clone(), scene, state).unwrap();
     let rows = fabric.stitches.rows();
     let turns = |simulator: &Simulator| {
         let stitches = &fabric.stitches;
@@ -60,10 +60,6 @@ fn hem_and_collar(project: &Project) -> [f64; 2] {
     }
     let facts = simulator.facts();
     let worn = turns(&simulator);
-    println!(
-        "{laid:.1?} → {worn:.1?}, {:.3} stretched, {} rejected",
-        facts.max_stretch, facts.rejected_steps
-    );
     assert!(facts.max_stretch < 0.02 && facts.max_penetration_mm < 3.0);
     [worn[0] - laid[0], worn[1] - laid[1]]
 }

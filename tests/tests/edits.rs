@@ -14,11 +14,13 @@ use std::sync::Arc;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::edit::{End, Way};
 use stitch_mesh::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
+use stitch_mesh::lay::lay;
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::patch::Patch;
 use stitch_mesh::stitch::{Make, Op, Stitch};
 use stitch_mesh::stitch_mesh::StitchMesh;
 use stitch_mesh::unravel::{handed_on_to, loose_loops};
+use stitch_mesh::yarn_net::YarnNet;
 use tests::fabrics;
 
 /// Numbers from which one edit is made up.
@@ -207,7 +209,7 @@ fn check_mesh(stitches: &StitchMesh) {
 
 /// What holds for the yarn of any stitch mesh.
 fn check_yarn(fabric: &Fabric) {
-    let net = &fabric.net;
+    let net = fabric.net();
     assert!(net.nodes.iter().all(|n| n.position.is_finite()));
     assert!(fabric.state().fits(net));
     let loose = loose_loops(&fabric.stitches, net);
@@ -233,7 +235,7 @@ fn check_yarn(fabric: &Fabric) {
 /// The yarn of every stitch goes on into its neighbours': from the right one to the left along the row, and up through every
 /// course edge.
 fn check_joints(fabric: &Fabric) {
-    let (stitches, net) = (&fabric.stitches, &fabric.net);
+    let (stitches, net) = (&fabric.stitches, fabric.net());
     let mesh = stitches.mesh();
     let mut joined: HashSet<[FaceId; 2]> = HashSet::new();
     for yarn in &net.yarns {
@@ -270,11 +272,18 @@ fn check_joints(fabric: &Fabric) {
     }
 }
 
+/// Whether two nets are the same to the last digit.
+fn same_net(a: &YarnNet, b: &YarnNet) -> bool {
+    // Debug prints every field, and of numbers all that there is.
+    format!("{a:?}") == format!("{b:?}")
+}
+
 fn check(project: &Project) {
     let fabric = project.fabric().unwrap();
     check_mesh(&fabric.stitches);
     check_yarn(fabric);
-    project.scene.validate(fabric.net.nodes.len()).unwrap();
+    assert!(same_net(fabric.net(), &lay(&fabric.stitches)), "laid again it is another net than laid anew");
+    project.scene.validate(fabric.net().nodes.len()).unwrap();
 }
 
 /// The project as its file has it.
@@ -347,6 +356,23 @@ fn most_edits_can_be_done() {
         let done = edit(which, &dice);
         assert!(done > 20, "only {done} of 60 edits of fabric {which} could be done");
     }
+}
+
+/// The comparison of nets sees two yarns that have changed places at one node, which is all that a purl changes, and one
+/// that is a hair longer.
+#[test]
+fn another_net_is_told_apart() {
+    let fabric = fabrics::fabric(0).fabric.unwrap();
+    let net = &**fabric.net();
+    assert!(same_net(net, &net.clone()));
+    let mut swapped = net.clone();
+    let stack = swapped.nodes.iter_mut().find(|n| n.visits.len() == 2).unwrap();
+    stack.visits.swap(0, 1);
+    assert!(!same_net(net, &swapped));
+    let mut longer = net.clone();
+    let visits = Arc::make_mut(&mut longer.visits);
+    visits[7].u = visits[7].u.next_up();
+    assert!(!same_net(net, &longer));
 }
 
 /// A collapse that moves numbers down takes cables, seams and colours along.

@@ -160,7 +160,7 @@ fn every_bundled_mesh_labels_itself_and_becomes_stitches() {
         let stitches = &fabric.stitches;
         // Inside, a plain stitch has four contact nodes of two yarns each.
         let mut nodes = vec![0; stitches.mesh().face_count()];
-        for node in &fabric.net.nodes {
+        for node in &fabric.net().nodes {
             if let (Some(face), 2) = (node.face, node.visits.len()) {
                 nodes[face.index()] += 1;
             }

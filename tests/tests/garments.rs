@@ -71,7 +71,7 @@ fn widest_gap(stitches: &StitchMesh, simulator: &Simulator, width: f64) -> f64 {
 fn worn(project: &Project, fabric: &Fabric) -> Simulator {
     let state = (*fabric.state()).clone();
     let mut simulator =
-        Simulator::new(&fabric.net, project.materials.clone(), project.scene.clone(), state).unwrap();
+        Simulator::new(fabric.net(), project.materials.clone(), project.scene.clone(), state).unwrap();
     while simulator.time_s() < 0.3 {
         simulator.step().unwrap();
     }

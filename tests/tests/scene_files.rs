@@ -58,7 +58,7 @@ fn parts_of_the_fabric_are_found_by_name_and_by_place() {
     let counts: Vec<usize> = project.scene.clamps.iter().map(|c| c.nodes.len()).collect();
     assert_eq!(counts[0], 4 * fabric.stitches.rows()[1].faces.len());
     assert_eq!(counts[1..3], [8, 1]);
-    let half = fabric.net.nodes.len() as f64 / 2.0;
+    let half = fabric.net().nodes.len() as f64 / 2.0;
     assert!((counts[3] as f64 / half - 1.0).abs() < 0.1, "{} of {half}", counts[3]);
     assert_eq!(project.scene.clamps[3].stiffness, 2.5);
 }
@@ -87,10 +87,41 @@ fn bodies_come_from_shapes_meshes_and_skeletons() {
     );
 }
 
+/// The cube as it is when it has grown upwards by `more` cm.
+fn taller(more: u32) -> String {
+    CUBE.replace(" 1 -1\n", &format!(" {} -1\n", 1 + more)).replace(" 1 1\n", &format!(" {} 1\n", 1 + more))
+}
+
+#[test]
+fn a_sequence_of_meshes_is_a_body() {
+    let program = program();
+    std::fs::create_dir(program.path("grow")).unwrap();
+    (0..3).for_each(|i| program.write(&format!("grow/cube-{i:02}.obj"), taller(i)));
+    program.write("grow/cube-1.obj", "another one");
+    let (_, project) = simulated(
+        &program,
+        r#"{"gravity": [0,0,0], "bodies": [
+            {"mesh_sequence": {"pattern": "grow/cube-##.obj", "rate": 10, "unit": "cm", "at": [0, -300, 0]}},
+            {"mesh_sequence": {"files": ["grow/cube-00.obj", "grow/cube-02.obj"], "rate": 2, "repeat": true, "unit": "cm",
+                               "at": [0, -500, 0]}, "move": {"speed": [5, 0, 0]}}]}"#,
+    );
+    let top = |body: &Body, time_s: f64| {
+        let mesh = body.sequence().unwrap().at(time_s);
+        mesh.positions.iter().map(|x| 1e3 * x.y).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let [once, again] = &project.scene.bodies[..] else { panic!("two bodies") };
+    assert!((top(once, 0.15) + 275.0).abs() < 1e-9 && (top(once, 9.0) + 270.0).abs() < 1e-9);
+    assert!((top(again, 0.75) + 480.0).abs() < 1e-9);
+    assert_eq!(again.pose(1.0).apply(glam::DVec3::ZERO), glam::DVec3::X * 5e-3);
+}
+
 #[test]
 fn errors_say_what_and_where() {
     let program = program();
     program.write("open.obj", CUBE.rsplit_once("f 2").unwrap().0);
+    program.write("cube.obj", CUBE);
+    program.write("other.obj", format!("# another\n{}", CUBE.replace("f 3 7 8 4", "f 7 8 4 3")));
+    program.write("more.obj", CUBE.replace("f 1 3 4 2", "v 0 -2 -1\nf 1 3 4 2 9"));
     for (text, words) in [
         ("# two lines\n{\"gravty\": [0,0,0]}", &["scene.json", "gravty", "line 2"][..]),
         (r#"{"hold": [{"name": "top", "row": 99}]}"#, &["top", "no row 99", "0–"]),
@@ -100,6 +131,20 @@ fn errors_say_what_and_where() {
         (r#"{"bodies": [{"ground": {"height": 0}}, {"friction": 1}]}"#, &["body 1", "one of"]),
         (r#"{"bodies": [{"mesh": {"file": "open.obj"}}]}"#, &["body 0", "open.obj", "not closed"]),
         (r#"{"bodies": [{"mesh": {"file": "none.obj"}}]}"#, &["body 0", "none.obj"]),
+        (
+            r#"{"bodies": [{"mesh_sequence": {"files": ["cube.obj", "other.obj"], "rate": 25}}]}"#,
+            &["body 0", "other.obj: line 13", "face 3 is not that of cube.obj"],
+        ),
+        (
+            r#"{"bodies": [{"mesh_sequence": {"files": ["cube.obj", "more.obj"], "rate": 25}}]}"#,
+            &["body 0", "more.obj: line 9", "9 vertices, where cube.obj has 8"],
+        ),
+        (r#"{"bodies": [{"mesh_sequence": {"pattern": "no-##.obj", "rate": 25}}]}"#, &["'no-##.obj'"]),
+        (r#"{"bodies": [{"mesh_sequence": {"files": ["cube.obj"], "rate": 0}}]}"#, &["body 0", "positive"]),
+        (
+            r#"{"bodies": [{"mesh_sequence": {"files": ["open.obj"], "rate": 25}}]}"#,
+            &["open.obj", "not closed"],
+        ),
         (r#"{"bodies": [{"sphere": {"center": [0,0,0], "radius": -1}}]}"#, &["body 0"]),
         (
             r#"{"bodies": [{"ground": {"height": 0}, "move": {"keys": [{"at": 1}, {"at": 1}]}}]}"#,

@@ -29,7 +29,7 @@ fn a_script_cuts_and_the_file_keeps_it() {
     // What slips out while it is simulated is in the file too, or this state would not fit.
     let simulated = Project::open(&program.path("c.purl")).unwrap();
     let fabric = simulated.fabric().unwrap();
-    assert!(fabric.surgery.operations.len() >= 3 && fabric.state().fits(&fabric.net));
+    assert!(fabric.surgery.operations.len() >= 3 && fabric.state().fits(fabric.net()));
 
     program.write("bad.jsonl", "{\"do\":\"cut_yarn\",\"faces\":[99999]}\n");
     let run = program.run(&["edit", "a.purl", "bad.jsonl", "-o", "d.purl"]);
@@ -42,7 +42,7 @@ fn a_cut_is_undone_and_mended_by_laying_anew() {
     let stitches =
         stitch_mesh::pieces::rectangle(6, 6, stitch_mesh::edge_counts::StitchSize::of_width(0.004));
     let mut document = Document::new(project_of(stitches.unwrap()));
-    let yarns = |d: &Document| d.project().fabric().unwrap().net.yarns.len();
+    let yarns = |d: &Document| d.project().fabric().unwrap().net().yarns.len();
     let whole = yarns(&document);
     document.apply(Command::CutYarn { faces: vec![14] }).unwrap();
     assert_eq!(yarns(&document), whole + 1);

@@ -111,7 +111,7 @@ fn a_painted_row_shows_plays_undoes_and_is_saved() {
     let (saved, shown) = (saved.fabric.unwrap(), window.editor().project().fabric().unwrap());
     assert_eq!(saved.stitches, shown.stitches);
     assert_eq!(
-        *saved.state.unwrap(),
+        *saved.simulated().unwrap(),
         window.editor().yarn().unwrap().state,
         "saved with the yarn as it is shown"
     );
@@ -139,7 +139,7 @@ fn painting_while_it_plays_keeps_it_playing() {
     window.wait("playing", |e| e.yarn().is_some_and(|s| s.time_s > 0.01));
     // Where the stitch is by now; the camera still looks at where the yarn was laid.
     let now = window.editor().yarn().unwrap().state.position.clone();
-    let nodes = fabric.net.nodes.iter().zip(&now).filter(|(n, _)| n.face == Some(row[2]));
+    let nodes = fabric.net().nodes.iter().zip(&now).filter(|(n, _)| n.face == Some(row[2]));
     let nodes: Vec<DVec3> = nodes.map(|(_, p)| *p).collect();
     let middle = nodes.iter().sum::<DVec3>() / nodes.len() as f64;
     let at = window.on_screen(middle, state.position.iter().copied());
@@ -154,7 +154,7 @@ fn painting_while_it_plays_keeps_it_playing() {
 fn laying_anew_puts_the_yarn_back_and_undo_brings_it_again() {
     let mut window = Window::new(knitted());
     window.press("Yarn");
-    let laid = window.editor().project().fabric().unwrap().net.laid_state().position;
+    let laid = window.editor().project().fabric().unwrap().net().laid_state().position;
     let moved = move |e: &Editor| {
         let now = &e.yarn().unwrap().state.position;
         laid.iter().zip(now).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)

@@ -217,6 +217,9 @@ enum Verb {
         /// What to measure
         #[arg(value_enum, default_value = "pull")]
         suite: bench::Suite,
+        /// For scale: leave out what has more loops
+        #[arg(long, default_value_t = 60_000)]
+        most_loops: usize,
         #[command(flatten)]
         print: Output,
     },
@@ -323,7 +326,7 @@ fn run(arguments: Arguments) -> Result<()> {
             let path = project.display().to_string();
             let project = Project::open(&project)?;
             let fabric = project.fabric().context(path)?;
-            let curves = curves(&fabric.net, &fabric.state(), &project.materials);
+            let curves = curves(fabric.net(), &fabric.state(), &project.materials);
             files::write(&output, &export::encode(&curves, &output)?)?;
             let points: usize = curves.curves.iter().map(|c| c.points.len()).sum();
             let facts = json!({"file": output, "yarns": curves.curves.len(), "points": points});
@@ -353,7 +356,7 @@ fn run(arguments: Arguments) -> Result<()> {
             files::write_png(&output, &pictures)
         }
         Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
-        Verb::Bench { suite, print } => bench::run(suite, print),
+        Verb::Bench { suite, most_loops, print } => bench::run(suite, most_loops, print),
         Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }

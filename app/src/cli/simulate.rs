@@ -104,20 +104,20 @@ pub fn simulate(
 fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
     let fabric = project.fabric()?;
     let state = (*fabric.state()).clone();
-    Ok(Simulator::new(&fabric.net, project.materials.clone(), scene.clone(), state)?)
+    Ok(Simulator::new(fabric.net(), project.materials.clone(), scene.clone(), state)?)
 }
 
 /// The project when the simulation that began with it has come so far.
 fn moved(project: &Project, simulator: &Simulator) -> Result<Project> {
     let mut after = project.clone();
-    after.take_over(Moved::by(simulator, &project.fabric()?.net), Some(simulator.facts()));
+    after.take_over(Moved::by(simulator, project.fabric()?.net()), Some(simulator.facts()));
     Ok(after)
 }
 
 /// A simulation where it was asked for, or on the CPU once the GPU has failed.
 enum Running {
     Cpu {
-        simulator: Simulator,
+        simulator: Box<Simulator>,
         /// Simulated time before it took over [s].
         before: f64,
     },
@@ -128,7 +128,7 @@ impl Running {
     /// The project's fabric in its scene.
     fn start(project: &Project, solver: Solver) -> Result<Self> {
         let Solver::Gpu = solver else {
-            return Ok(Self::Cpu { simulator: start(project, &project.scene)?, before: 0.0 });
+            return Ok(Self::Cpu { simulator: Box::new(start(project, &project.scene)?), before: 0.0 });
         };
         let fabric = project.fabric()?;
         let state = (*fabric.state()).clone();
@@ -137,7 +137,7 @@ impl Running {
         let materials = project.materials.clone();
         Ok(Self::Gpu(Box::new(GpuSimulator::new(
             &gpu,
-            &fabric.net,
+            fabric.net(),
             materials,
             project.scene.clone(),
             state,
@@ -164,7 +164,7 @@ impl Running {
                     let mut simulator =
                         Simulator::new(gpu.net(), materials, scene, gpu.last_state().clone())?;
                     simulator.resume_at(gpu.last_time_s());
-                    *self = Self::Cpu { simulator, before: gpu.last_time_s() };
+                    *self = Self::Cpu { simulator: Box::new(simulator), before: gpu.last_time_s() };
                 }
                 other => other?,
             },
@@ -180,7 +180,7 @@ impl Running {
         };
         let facts = gpu.facts()?;
         let moved = Moved {
-            from: Arc::clone(&project.fabric()?.net),
+            from: Arc::clone(project.fabric()?.net()),
             net: Arc::clone(gpu.net()),
             surgery: gpu.surgery().clone(),
             state: Arc::new(gpu.state()?.clone()),

@@ -99,15 +99,15 @@ mod tests {
     #[test]
     fn cloth_lies_beside_stitches_and_stays_through_their_edits() {
         let before = knitted();
-        let mut moved = before.fabric().unwrap().net.laid_state();
+        let mut moved = before.fabric().unwrap().net().laid_state();
         moved.position.iter_mut().for_each(|x| x.z += 0.01);
         let mut before = before;
-        before.fabric.as_mut().unwrap().state = Some(Arc::new(moved.clone()));
+        before.fabric.as_mut().unwrap().put(moved.clone());
         let after = run(&before, r##"{"do":"weave","draft":"twill","ends":6,"picks":5,"weft":"#204080"}"##);
         let fabric = after.fabric().unwrap();
         let knit = moved.position.len();
         assert_eq!(fabric.state().position[..knit], moved.position);
-        assert_eq!(fabric.net.nodes.len(), knit + 30 + 22);
+        assert_eq!(fabric.net().nodes.len(), knit + 30 + 22);
         let right = moved.position.iter().map(|x| x.x).fold(0.0, f64::max);
         assert!(fabric.state().position[knit..].iter().all(|x| x.x > right && (x.z - 0.01).abs() < 1e-9));
         let purled = run(&after, r#"{"do":"set_stitch","faces":[5],"stitch":"p"}"#);
@@ -137,7 +137,7 @@ mod tests {
         project.save(&path).unwrap();
         let opened = Project::open(&path).unwrap();
         assert_eq!(opened.fabric().unwrap().woven[..], [piece]);
-        assert_eq!(opened.fabric().unwrap().net.laid_state(), project.fabric().unwrap().net.laid_state());
+        assert_eq!(opened.fabric().unwrap().net().laid_state(), project.fabric().unwrap().net().laid_state());
         let facts = crate::inspect::inspect(&opened);
         assert_eq!((facts.yarns.open, facts.contact_nodes, facts.faces), (17, 70, 0));
         assert_eq!(facts.problems, []);

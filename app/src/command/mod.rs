@@ -367,7 +367,7 @@ impl Command {
             Self::UsePreset { color, preset } => yarns::use_preset(project, *color, *preset)?,
             Self::ClearMaterial { color } => yarns::clear(project, *color)?,
             Self::SetScene { scene } => {
-                scene.validate(project.fabric.as_ref().map_or(0, |f| f.net.nodes.len()))?;
+                scene.validate(project.fabric.as_ref().map_or(0, |f| f.net().nodes.len()))?;
                 project.scene = scene.clone();
             }
             Self::Hold { faces } => pins::hold(project, faces)?,

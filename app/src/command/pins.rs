@@ -1,6 +1,7 @@
 //! Holding stitches; pins and clamps through an edit, which gives the nodes of the yarn new numbers.
 
 use super::check_face;
+use crate::fabric::Fabric;
 use crate::project::Project;
 use crate::scenes;
 use anyhow::Result;
@@ -22,10 +23,11 @@ pub(super) fn hold(project: &mut Project, faces: &[u32]) -> Result<()> {
 
 /// Lets the pins and clamps of a scene hold on `new` what they held on `old`: nodes of stitches, or outside of the mesh, that
 /// have as many nodes as before. `was` tells which face of the old mesh a face of the new one was.
-pub(super) fn keep(scene: &mut Scene, old: &YarnNet, new: &YarnNet, was: impl Fn(FaceId) -> Option<FaceId>) {
+pub(super) fn keep(scene: &mut Scene, old: &Fabric, new: &Fabric, was: impl Fn(FaceId) -> Option<FaceId>) {
     if scene.pins.is_empty() && scene.clamps.is_empty() {
         return;
     }
+    let [old, new] = [old, new].map(Fabric::net);
     let by_face = |net: &YarnNet| {
         let mut nodes: HashMap<Option<FaceId>, Vec<u32>> = HashMap::new();
         for (node, i) in net.nodes.iter().zip(0..) {

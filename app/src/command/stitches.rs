@@ -24,7 +24,7 @@ pub(super) fn restitch(
     let mut stitches = (*old.stitches).clone();
     change(&mut stitches)?;
     let fabric = old.edited(stitches);
-    pins::keep(&mut project.scene, &old.net, &fabric.net, Some);
+    pins::keep(&mut project.scene, old, &fabric, Some);
     project.fabric = Some(fabric);
     project.keep_yarn_of(&before, None);
     Ok(())

@@ -20,7 +20,7 @@ fn reshape(
     let fabric = from.edited(stitches);
     let was = survivors.faces_before();
     let old_face = |f: FaceId| was.get(f.index()).copied().flatten();
-    pins::keep(&mut project.scene, &from.net, &fabric.net, old_face);
+    pins::keep(&mut project.scene, from, &fabric, old_face);
     project.fabric = Some(fabric);
     project.keep_yarn_of(&before, Some(&was));
     Ok(Some(survivors))

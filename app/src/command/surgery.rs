@@ -29,7 +29,7 @@ fn each_loop(
         check_face(face, mesh.face_count())?;
         let of_face =
             |l: &&stitch_mesh::yarn_net::Loop| mesh.face(l.top) == FaceId(face) && !l.head.is_empty();
-        let made = fabric.net.loops.iter().find(of_face);
+        let made = fabric.net().loops.iter().find(of_face);
         let head =
             made.with_context(|| format!("stitch {face} has no loop that anything holds"))?.head.clone();
         project.scene.follow(&fabric.operate(operation(head))?);

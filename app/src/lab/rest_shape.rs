@@ -54,7 +54,8 @@ pub fn run(bench: &mut Bench) -> Result<()> {
     for (name, what, fabric) in pieces {
         let scene = Scene { time_step: slower * STEP, ..Scene::empty() };
         let Project { materials, .. } = &garment;
-        let mut simulator = Simulator::new(&fabric.net, materials.clone(), scene, (*fabric.state()).clone())?;
+        let mut simulator =
+            Simulator::new(fabric.net(), materials.clone(), scene, (*fabric.state()).clone())?;
         let mut points = vec![[0.0, area(&specimen, simulator.state())]];
         while simulator.time_s() < slower * TIME {
             bench.run(&mut simulator, 10.0 * slower * STEP)?;

@@ -1,15 +1,14 @@
 //! Scene files, as a person writes them: see `docs/scenes.md`. Lengths are in millimetres, angles in degrees.
 
 use super::holds::{self, Hold};
+use super::meshes::{MeshFile, SequenceFiles};
 use super::skeleton::Skeleton;
 use crate::fabric::Fabric;
-use crate::files;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use serde::Deserialize;
-use sim_core::{Body, ClosedMesh, Key, Motion, Scene, Triangles};
+use sim_core::{Body, Key, Motion, Scene};
 use std::path::Path;
-use stitch_mesh::obj::{Unit, read_obj};
 
 /// Friction of wool on a body.
 pub(super) const FRICTION: f64 = 0.4;
@@ -74,6 +73,7 @@ struct BodyEntry {
     #[serde(rename = "box")]
     cuboid: Option<Cuboid>,
     mesh: Option<MeshFile>,
+    mesh_sequence: Option<SequenceFiles>,
     skeleton: Option<Skeleton>,
     friction: Option<f64>,
     #[serde(rename = "move")]
@@ -108,17 +108,6 @@ struct Cuboid {
     size: [f64; 3],
     #[serde(default)]
     turn: [f64; 3],
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MeshFile {
-    /// Beside the scene file.
-    file: String,
-    #[serde(default)]
-    unit: Option<String>,
-    #[serde(default)]
-    at: [f64; 3],
 }
 
 /// How something moves: at a speed, or by keys.
@@ -185,9 +174,13 @@ impl BodyEntry {
         }
         if let Some(file) = &self.mesh {
             let mesh = file.read(origin, folder)?;
-            let positions = &mesh.triangles().positions;
-            let middle = positions.iter().sum::<DVec3>() / positions.len() as f64;
+            let middle = middle(&mesh.triangles().positions);
             found.push((Body::Mesh { mesh, friction }, middle));
+        }
+        if let Some(files) = &self.mesh_sequence {
+            let frames = files.read(origin, folder)?;
+            let middle = middle(&frames.at(0.0).positions);
+            found.push((Body::Sequence { frames, friction }, middle));
         }
         match (&self.skeleton, found.len()) {
             (Some(skeleton), 0) if self.moves.is_none() => skeleton.bodies(origin, friction),
@@ -199,30 +192,15 @@ impl BodyEntry {
                     Ok(Body::Moving { motion: moves.motion(middle, origin)?, body: Box::new(body) })
                 })
                 .collect(),
-            _ => bail!("has to be one of 'ground', 'sphere', 'capsule', 'box', 'mesh', 'skeleton'"),
+            _ => bail!(
+                "has to be one of 'ground', 'sphere', 'capsule', 'box', 'mesh', 'mesh_sequence', 'skeleton'"
+            ),
         }
     }
 }
 
-impl MeshFile {
-    fn read(&self, origin: DVec3, folder: &Path) -> Result<ClosedMesh> {
-        let unit = match self.unit.as_deref() {
-            None | Some("mm") => Unit::Mm,
-            Some("cm") => Unit::Cm,
-            Some("dm") => Unit::Dm,
-            Some("m") => Unit::M,
-            Some("in") => Unit::In,
-            Some(other) => bail!("'{other}' is no unit: one of mm, cm, dm, m, in"),
-        };
-        let path = folder.join(&self.file);
-        let mesh = read_obj(&files::read(&path)?, unit).with_context(|| path.display().to_string())?;
-        let shift = origin + metres(self.at);
-        let positions = mesh.positions().iter().map(|p| *p + shift).collect();
-        let fan = |face: Vec<u32>| (2..face.len()).map(move |i| [face[0], face[i - 1], face[i]]);
-        let triangles = mesh.face_lists().into_iter().flat_map(fan).collect();
-        let mesh = Triangles { positions, triangles };
-        ClosedMesh::new(mesh).with_context(|| path.display().to_string())
-    }
+fn middle(positions: &[DVec3]) -> DVec3 {
+    positions.iter().sum::<DVec3>() / positions.len() as f64
 }
 
 /// The scene that a text describes, for a fabric; files that it names are in `folder`.
@@ -256,6 +234,6 @@ pub(super) fn read(text: &str, folder: &Path, fabric: &Fabric, stiffness: f64) -
         clamps: file.hold.iter().enumerate().map(clamp).collect::<Result<_>>()?,
         time_step: 1e-3 * file.time_step_ms,
     };
-    scene.validate(fabric.net.nodes.len())?;
+    scene.validate(fabric.net().nodes.len())?;
     Ok(scene)
 }

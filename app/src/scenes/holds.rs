@@ -69,7 +69,7 @@ pub(super) fn clamp(
 
 /// The nodes that it names.
 fn chosen(hold: &Hold, fabric: &Fabric, state: &YarnState, origin: DVec3) -> Result<Vec<u32>> {
-    let count = fabric.net.nodes.len();
+    let count = fabric.net().nodes.len();
     match (&hold.nodes, &hold.stitches, hold.row, hold.region) {
         (Some(nodes), None, None, None) => {
             if let Some(node) = nodes.iter().find(|n| **n as usize >= count) {
@@ -109,6 +109,6 @@ fn chosen(hold: &Hold, fabric: &Fabric, state: &YarnState, origin: DVec3) -> Res
 
 /// The nodes of some stitches.
 pub(super) fn of_stitches(fabric: &Fabric, faces: &HashSet<FaceId>) -> Vec<u32> {
-    let nodes = fabric.net.nodes.iter().zip(0..);
+    let nodes = fabric.net().nodes.iter().zip(0..);
     nodes.filter(|(n, _)| n.face.is_some_and(|f| faces.contains(&f))).map(|(_, i)| i).collect()
 }

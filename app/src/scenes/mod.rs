@@ -2,6 +2,7 @@
 
 mod file;
 mod holds;
+mod meshes;
 mod skeleton;
 
 use crate::fabric::Fabric;
@@ -97,7 +98,7 @@ pub fn scene(name_or_file: &str, fabric: &Fabric, material: &Material) -> Result
     };
     Ok(match name_or_file {
         "free" => Scene::empty(),
-        "board" => pinned_out(&fabric.stitches, (&fabric.net, &state), material, |_| true),
+        "board" => pinned_out(&fabric.stitches, (fabric.net(), &state), material, |_| true),
         "ground" => Scene { bodies: vec![ground(low.y - 0.1 * size)], ..Scene::default() },
         "sphere" => {
             let radius = 0.3 * size;

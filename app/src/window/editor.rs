@@ -222,7 +222,7 @@ impl Editor {
     fn bounds(&self) -> Option<Bounds> {
         let mesh = match (self.stage, &self.view.project.fabric) {
             (Stage::Yarn, Some(fabric)) => {
-                return Bounds::of(self.yarn_now(fabric).1.position.iter().map(|p| p.as_vec3()));
+                return Bounds::of(self.yarn_now(fabric)?.1.position.iter().map(|p| p.as_vec3()));
             }
             (Stage::Stitches, Some(fabric)) => fabric.stitches.mesh(),
             _ => self.view.project.labelled.mesh(),
@@ -231,13 +231,15 @@ impl Editor {
     }
 
     /// The yarn where it is now, in the simulation or in the document.
-    pub(super) fn yarn_now(&self, fabric: &Fabric) -> (Arc<YarnNet>, Arc<YarnState>) {
-        let is_of = |net: &Arc<YarnNet>| Arc::ptr_eq(net, &fabric.net);
+    /// Nothing where it has not been laid yet after an edit.
+    pub(super) fn yarn_now(&self, fabric: &Fabric) -> Option<(Arc<YarnNet>, Arc<YarnState>)> {
+        let laid = fabric.net_if_laid()?;
+        let is_of = |net: &Arc<YarnNet>| Arc::ptr_eq(net, laid);
         match &self.snapshot {
             Some(s) if self.loaded.as_ref().is_some_and(is_of) && s.state.fits(&s.net) => {
-                (Arc::clone(&s.net), Arc::new(s.state.clone()))
+                Some((Arc::clone(&s.net), Arc::new(s.state.clone())))
             }
-            _ => (Arc::clone(&fabric.net), fabric.state()),
+            _ => Some((Arc::clone(laid), fabric.state())),
         }
     }
 
@@ -305,17 +307,19 @@ impl Editor {
             }
             return;
         };
+        // After an edit the yarn follows a little later.
+        let Some(net) = fabric.net_if_laid() else { return };
         let wants = (project.materials.clone(), project.scene.clone());
         let in_place = self.placed == self.view.placed
-            && self.loaded.as_ref().is_some_and(|net| Arc::ptr_eq(net, &fabric.net));
+            && self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, net));
         if !in_place {
             self.generation = self.sim.send(SimCommand::Load {
-                net: fabric.net.clone(),
+                net: net.clone(),
                 materials: wants.0.clone(),
                 scene: wants.1.clone(),
                 state: Some(fabric.state()),
             });
-            self.loaded = Some(fabric.net.clone());
+            self.loaded = Some(net.clone());
             self.placed = self.view.placed;
             if self.playing {
                 self.sim.send(SimCommand::Play);
@@ -338,7 +342,7 @@ impl Editor {
     /// The node nearest to a point of the yarn.
     pub(super) fn nearest_node(&self, point: DVec3) -> Option<(u32, DVec3)> {
         let fabric = self.view.project.fabric.as_ref()?;
-        let (_, state) = self.yarn_now(fabric);
+        let (_, state) = self.yarn_now(fabric)?;
         let nodes = state.position.iter().enumerate();
         nodes.min_by(|a, b| a.1.distance(point).total_cmp(&b.1.distance(point))).map(|(i, p)| (i as u32, *p))
     }

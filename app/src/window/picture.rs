@@ -124,8 +124,9 @@ impl Editor {
                 *color = [0, 1, 2].map(|i| mix(color[i], palette::SELECTED[i]));
             }
         }
-        let shown = self.screen.as_mut().map(|screen| screen.set_colors(&self.faces, &colors));
-        self.report(shown);
+        if let Some(screen) = &mut self.screen {
+            screen.set_colors(&colors);
+        }
     }
 
     /// Colours stitches by strain, or by kind.
@@ -205,7 +206,7 @@ impl Editor {
     /// neighbours leave no gap.
     fn loop_faces(&self) -> Faces {
         let Some(fabric) = &self.view.project.fabric else { return Faces::default() };
-        let (net, state) = self.yarn_now(fabric);
+        let Some((net, state)) = self.yarn_now(fabric) else { return Faces::default() };
         let mesh = fabric.stitches.mesh();
         let mut nodes: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); mesh.face_count()];
         for (node, position) in net.nodes.iter().zip(&state.position) {

@@ -18,10 +18,8 @@ pub struct Screen {
     viewport: Viewport,
     scene: Scene,
     texture: egui::TextureId,
-    /// What the picture in the texture was drawn for; none where it is out of date.
+    /// What the picture in the texture was drawn for.
     drawn: Option<([u32; 2], Camera)>,
-    /// Whether nothing but colours of faces has changed since.
-    recolored: bool,
 }
 
 impl Screen {
@@ -34,16 +32,7 @@ impl Screen {
         let viewport = Viewport::new(&gpu, &renderer, [64, 64])?;
         let texture =
             painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
-        Ok(Self {
-            gpu,
-            painter,
-            renderer,
-            viewport,
-            scene: Scene::new(),
-            texture,
-            drawn: None,
-            recolored: false,
-        })
+        Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture, drawn: None })
     }
 
     /// Replaces all that is shown.
@@ -51,17 +40,12 @@ impl Screen {
     /// # Errors
     /// It is more than the device holds.
     pub fn set(&mut self, drawing: &Drawing) -> Result<()> {
-        self.drawn = None;
         Ok(self.scene.set(&self.gpu, drawing)?)
     }
 
     /// Shows the faces set last in other colours.
-    ///
-    /// # Errors
-    /// As [`Self::set`].
-    pub fn set_colors(&mut self, faces: &Faces, colors: &[[f32; 3]]) -> Result<()> {
-        self.recolored = true;
-        Ok(self.scene.set_colors(&self.gpu, faces, colors)?)
+    pub fn set_colors(&mut self, colors: &[[f32; 3]]) {
+        self.scene.set_colors(&self.gpu, colors);
     }
 
     /// Replaces the faces only.
@@ -69,7 +53,6 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_faces(&mut self, faces: &Faces) -> Result<()> {
-        self.drawn = None;
         Ok(self.scene.set_faces(&self.gpu, faces)?)
     }
 
@@ -78,7 +61,6 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_marks(&mut self, marks: &Lines) -> Result<()> {
-        self.drawn = None;
         Ok(self.scene.set_marks(&self.gpu, marks)?)
     }
 
@@ -87,7 +69,6 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_yarn(&mut self, yarn: &YarnCurves) -> Result<()> {
-        self.drawn = None;
         Ok(self.scene.set_yarn(&self.gpu, yarn)?)
     }
 
@@ -96,7 +77,6 @@ impl Screen {
     /// # Errors
     /// As [`Self::set`].
     pub fn set_solids(&mut self, solids: &Solids) -> Result<()> {
-        self.drawn = None;
         Ok(self.scene.set_solids(&self.gpu, solids)?)
     }
 
@@ -117,11 +97,10 @@ impl Screen {
             );
         }
         let wanted = Some((size, *camera));
-        let recolored = std::mem::take(&mut self.recolored);
-        if self.drawn != wanted || recolored {
+        if self.drawn != wanted || !self.scene.is_settled() {
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             if self.drawn == wanted {
-                self.renderer.recolor(&mut encoder, &self.viewport, &self.scene);
+                self.renderer.redraw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
             } else {
                 self.renderer.draw(&self.gpu, &mut encoder, &self.viewport, camera, &self.scene);
             }

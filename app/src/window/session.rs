@@ -1,7 +1,7 @@
 //! The document in a thread of its own, so that the window never waits for an edit, a file or a large mesh.
 //!
-//! Requests go in, in order; the newest [`View`] comes out, and a [`Survey`] of it follows when nothing else waits. The window
-//! draws what it last saw.
+//! Requests go in, in order; the newest [`View`] comes out. Its yarn and a [`Survey`] of it follow when nothing else waits. The
+//! window draws what it last saw.
 //!
 //! Long work can be cancelled. A command makes a new project and leaves the old one alone, so whatever it is, it runs in yet
 //! another thread and its result is simply not taken over: the document is as it was, at once. Work that can be watched, a
@@ -153,6 +153,10 @@ impl Session {
                 wake();
                 // Of a state that is about to change nobody needs to know more.
                 if count.load(Ordering::Acquire) == 1 {
+                    if let Some(fabric) = &view.project.fabric {
+                        fabric.state();
+                        wake();
+                    }
                     lock(&slot).1 = Arc::new(Survey::of(&view));
                 }
                 count.fetch_sub(1, Ordering::Release);

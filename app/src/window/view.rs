@@ -91,7 +91,7 @@ impl View {
         let fabric_rows = project.fabric.as_ref().map(|fabric| {
             let stitches = &fabric.stitches;
             let known = before.and_then(|b| b.fabric_rows.as_ref());
-            known.filter(|r| Arc::ptr_eq(&r.of, stitches)).cloned().unwrap_or_else(|| {
+            known.filter(|r| r.of.shares_mesh_of(stitches)).cloned().unwrap_or_else(|| {
                 Arc::new(Rows::new(stitches, stitches.mesh().face_count(), stitches.rows()))
             })
         });

@@ -336,7 +336,8 @@ impl GpuSimulator {
                 (record.corners_x, record.corners_y, record.corners_z) = corners.into();
                 record.field = self.fields.iter().find(|(b, _)| *b == index).map_or(0, |(_, field)| *field);
             }
-            Body::Moving { .. } => {}
+            // Refused by `set_scene`.
+            Body::Sequence { .. } | Body::Moving { .. } => {}
         }
         record
     }
@@ -355,6 +356,9 @@ impl GpuSimulator {
                 Body::Moving { body, .. } => &**body,
                 resting => resting,
             };
+            if let Body::Sequence { .. } = resting {
+                return Err(GpuError::Unsupported(format!("body {index} changes its shape")).into());
+            }
             if let Body::Mesh { mesh, .. } = resting {
                 fields.push((index, distances.len() as u32));
                 distances.extend(mesh.grid().3);

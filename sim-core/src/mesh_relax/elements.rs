@@ -142,7 +142,8 @@ mod tests {
         let stitch: Stitch = stitch.parse().unwrap();
         let count = stitch.bottoms() + stitch.tops() + 2;
         let at = |i: usize| DVec3::new((i as f64).cos(), (i as f64).sin(), 0.0);
-        let mesh = PolygonMesh::new((0..count).map(at).collect(), &[(0..count as u32).collect()]).unwrap();
+        let mesh =
+            PolygonMesh::new((0..count).map(at).collect(), &[(0..count as u32).collect::<Vec<_>>()]).unwrap();
         StitchMesh::new(mesh, vec![stitch]).unwrap()
     }
 

@@ -63,6 +63,17 @@ impl Factor {
         }
     }
 
+    /// Its size, packed [bytes], and the operations that making it takes.
+    pub fn work(&self) -> (u64, u64) {
+        let of = |group: &Group| {
+            let (n, m) = (group.unknowns.len() as u64, group.rows.len() as u64);
+            // (C; Q) and U of a front, and half of Q Qᵀ; a multiplication and an addition each.
+            2 * (n * n * n / 3 + n * n * m + n * n * n / 6 + n * m * m / 2)
+        };
+        let operations = self.pattern.groups.iter().map(of).sum();
+        (size_of_val(&self.tiles[..]) as u64, operations)
+    }
+
     /// Factorises `matrix`.
     pub fn factorise(&mut self, matrix: &BlockMatrix) -> Result<(), NoFactor> {
         let diagonal = |j: usize| matrix.value[matrix.column[j] as usize];
@@ -191,16 +202,17 @@ fn eliminate(
         }
         inverse.resize(n * n, 0.0);
         panel::eliminate(front, &mut inverse, n).map_err(|_| NoFactor)?;
+        let product = &mut product[..m * m];
         let rows = MatRef::from_column_major_slice(front, n + m, n).subrows(n, m);
         triangular::matmul(
-            MatMut::from_column_major_slice_mut(&mut product[..m * m], m, m),
+            MatMut::from_column_major_slice_mut(product, m, m),
             TriangularLower,
             Accum::Replace,
             rows,
             Rectangular,
             rows.transpose(),
             Rectangular,
-            1.0,
+            -1.0,
             Par::Seq,
         );
         let scale = &mut columns[group.unknowns.start - part.unknowns.start..][..n];
@@ -212,7 +224,7 @@ fn eliminate(
                 Some(to) => &mut outer[to..to + len],
                 None => &mut fronts[to - part.fronts.start..to - part.fronts.start + len],
             };
-            changed.iter_mut().zip(&product[from..from + len]).for_each(|(entry, change)| *entry -= change);
+            changed.iter_mut().zip(&product[from..from + len]).for_each(|(entry, change)| *entry += change);
         }
     }
     Ok(())

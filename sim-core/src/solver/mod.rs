@@ -37,7 +37,7 @@ pub(crate) mod pattern;
 pub(crate) mod product;
 pub(crate) mod tail;
 
-use crate::costs::{Costs, Stage, Watch};
+use crate::costs::{Costs, Stage, Watch, Work};
 use crate::model::Model;
 use factor::Factor;
 use gradients::Solved;
@@ -63,7 +63,7 @@ const CROSSOVER: usize = 1_500;
 pub(crate) const TOLERANCE: f64 = 5e-4;
 
 /// The same with a complete factorisation, of which each iteration makes the error some hundred times smaller.
-const TOLERANCE_OF_COMPLETE: f64 = 1e-6;
+const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
 
 /// Systems solved directly after one that conjugate gradients failed on: what made that one hard is still there in the next
 /// few, and trying in vain costs as much as solving.
@@ -119,6 +119,14 @@ impl Solver {
     pub fn iterative(model: &Model, matrix: &BlockMatrix) -> Self {
         let incomplete = Factor::new(Pattern::incomplete(model, matrix));
         Self { incomplete: Some(incomplete), complete: None, direct_for: 0 }
+    }
+
+    /// What it has to do.
+    pub fn work(&self, matrix: &BlockMatrix) -> Work {
+        let factor = self.incomplete.as_ref().or(self.complete.as_ref());
+        let (bytes, factorisation_operations) = factor.map_or((0, 0), Factor::work);
+        let matrix_bytes = size_of_val(&matrix.value[..]) as u64;
+        Work { iteration_bytes: 2 * bytes + matrix_bytes, factorisation_operations }
     }
 
     /// Replaces the guess in `x` by the solution of `matrix` x = `rhs`.

@@ -69,20 +69,37 @@ impl pulp::WithSimd for Packing<'_> {
         let n = scale.len();
         let height = front.len() / n;
         let (upper, below) = tiles.split_at_mut(before(n.div_ceil(LANES), n));
-        let mut whole = Vec::with_capacity(height);
         for (j, (own, column)) in inverse.chunks_exact(n).zip(front.chunks_exact(height)).enumerate() {
             let (own, others) = (&own[..=j], &column[n..]);
             scale[j] = [own, others].map(|part| (largest(part) / MOST).max(f32::MIN_POSITIVE));
-            whole_numbers(own, 1.0 / scale[j][0], &mut whole);
-            for (band, rows) in whole.chunks(LANES).enumerate() {
-                upper[before(band, n) + j - band * LANES][..rows.len()].copy_from_slice(rows);
+            let [by_upper, by_below] = scale[j].map(|scale| 1.0 / scale);
+            let (whole, rest) = own.as_chunks();
+            for (band, rows) in whole.iter().enumerate() {
+                upper[before(band, n) + j - band * LANES] = whole_numbers(rows, by_upper);
             }
-            whole_numbers(others, 1.0 / scale[j][1], &mut whole);
-            for (band, rows) in whole.chunks(LANES).enumerate() {
-                below[band * n + j][..rows.len()].copy_from_slice(rows);
+            if !rest.is_empty() {
+                upper[before(whole.len(), n) + j - whole.len() * LANES] =
+                    whole_numbers(&padded(rest), by_upper);
+            }
+            let (whole, rest) = others.as_chunks();
+            for (band, rows) in whole.iter().enumerate() {
+                below[band * n + j] = whole_numbers(rows, by_below);
+            }
+            if !rest.is_empty() {
+                below[whole.len() * n + j] = whole_numbers(&padded(rest), by_below);
             }
         }
     }
+}
+
+/// Fewer than [`LANES`] numbers, zeros behind.
+#[inline(always)]
+fn padded(numbers: &[f32]) -> [f32; LANES] {
+    let mut lanes = [0.0; LANES];
+    for (lane, x) in lanes.iter_mut().zip(numbers) {
+        *lane = *x;
+    }
+    lanes
 }
 
 #[inline(always)]
@@ -99,13 +116,14 @@ fn largest(part: &[f32]) -> f32 {
 
 /// What is nearest to each of `numbers` times `by`.
 #[inline(always)]
-fn whole_numbers(numbers: &[f32], by: f32, whole: &mut Vec<i16>) {
-    whole.clear();
-    whole.resize(numbers.len(), 0);
-    for (whole, x) in whole.iter_mut().zip(numbers) {
-        // Adding it leaves no bits for fractions, which rounds without a call.
-        *whole = ((x * by + ROUNDING) - ROUNDING) as i32 as i16;
+fn whole_numbers(numbers: &[f32; LANES], by: f32) -> Tile {
+    let mut tile = [0; LANES];
+    for l in 0..LANES {
+        // Adding the constant leaves no bits for fractions, which rounds without a call; the whole number is what it adds to its bits.
+        let bits = (numbers[l] * by + ROUNDING).to_bits() as i32;
+        tile[l] = (bits - ROUNDING.to_bits() as i32) as i16;
     }
+    tile
 }
 
 /// Memory for products with a front.
@@ -172,9 +190,7 @@ fn pad(vector: &[f32], lanes: &mut Vec<[f32; LANES]>) {
     let (whole, rest) = vector.as_chunks::<LANES>();
     lanes.extend_from_slice(whole);
     if !rest.is_empty() {
-        let mut last = [0.0; LANES];
-        last[..rest.len()].copy_from_slice(rest);
-        lanes.push(last);
+        lanes.push(padded(rest));
     }
 }
 

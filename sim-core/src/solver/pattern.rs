@@ -190,8 +190,9 @@ impl Order {
 
     /// Adds one level of fill: what a group is joined to goes on to all of them.
     fn hand_on_once(&self, rows: &mut [Vec<u32>]) {
-        for handed_on in rows.to_vec() {
-            for &b in &handed_on {
+        let joined = rows.to_vec();
+        for handed_on in &joined {
+            for &b in handed_on {
                 let group = self.group_of_node[b as usize];
                 let later = handed_on.iter().filter(|a| self.group_of_node[**a as usize] > group);
                 rows[group as usize].extend(later);

@@ -10,11 +10,15 @@ use crate::seam::sorted;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{Place, StitchMesh};
 use glam::DVec3;
+use smallvec::SmallVec;
+
+/// The corners of a face.
+pub type Outline = SmallVec<[u32; 4]>;
 
 /// The parts of a stitch mesh.
 pub struct Draft {
     pub positions: Vec<DVec3>,
-    pub faces: Vec<Vec<u32>>,
+    pub faces: Vec<Outline>,
     pub stitches: Vec<Stitch>,
     pub dyes: Vec<Dye>,
     pub places: Vec<Option<Place>>,
@@ -29,7 +33,7 @@ impl Draft {
         let mesh = stitches.mesh();
         Self {
             positions: mesh.positions().to_vec(),
-            faces: mesh.face_lists(),
+            faces: mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0).collect()).collect(),
             stitches: stitches.stitches().to_vec(),
             dyes: stitches.dyes().to_vec(),
             places: stitches.places().to_vec(),

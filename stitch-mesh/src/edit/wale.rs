@@ -1,6 +1,6 @@
 //! Adding, removing and shifting wale edges.
 
-use super::draft::{Draft, inner_wale};
+use super::draft::{Draft, Outline, inner_wale};
 use super::reshape::{cut, join, pass_bottom, pass_top};
 use super::{EditError, Edited, End, Way};
 use crate::ids::{FaceId, VertexId};
@@ -117,6 +117,6 @@ impl StitchMesh {
 }
 
 /// A face from its vertices below and above, left to right.
-fn outline(below: &[u32], above: &[u32]) -> Vec<u32> {
+fn outline(below: &[u32], above: &[u32]) -> Outline {
     below.iter().chain(above.iter().rev()).copied().collect()
 }

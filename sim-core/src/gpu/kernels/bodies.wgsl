@@ -116,7 +116,7 @@ fn hold_off(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         let past = v - moving;
         let slip = length(past - dot(past, normal) * normal);
-        let press = body.friction * stiffness * max(-gap, 0.0);
+        let press = body.friction * stiffness * max(-gap - h * dot(moving, normal), 0.0);
         let drag = min(press / max(slip, 1e-12), MOST_DRAG * mass / h);
         let along = h * (h * stiffness - drag);
         diagonal += along * normal * normal + h * drag;

@@ -39,7 +39,8 @@ fn ten_fabrics() -> Vec<(&'static str, YarnNet)> {
             (0..5).map(|t| row(&(0..6).map(|s| of(s, t)).collect::<Vec<_>>())).collect();
         lay(&from_rows(&rows, size).unwrap())
     };
-    let lace = |t: usize| if t % 2 == 0 { row(&["k"; 6]) } else { row(&["d21k", "ky", "d21k", "ky"]) };
+    let lace =
+        |t: usize| if t.is_multiple_of(2) { row(&["k"; 6]) } else { row(&["d21k", "ky", "d21k", "ky"]) };
     let narrow = [row(&["k"; 9]), row(&["d123k"; 3]), row(&["k"; 3]), row(&["kpk"; 3])];
     let draft = "twill".parse().unwrap();
     let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(Dye);

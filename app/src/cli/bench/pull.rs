@@ -1,9 +1,7 @@
-//! Speed of the simulator, beside what it achieved with it.
-//!
-//! Times are those of the processor over all threads, so they compare across machines with other things to do; the quality columns
-//! tell whether they were bought with a wrong result.
+//! Stockinette that is pulled.
 
-use super::Output;
+use super::{solver, stages_ms, stages_text};
+use crate::cli::Output;
 use anyhow::Result;
 use cpu_time::ProcessTime;
 use glam::DVec3;
@@ -13,13 +11,6 @@ use std::sync::Arc;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::lay::lay;
 use stitch_mesh::pieces::rectangle;
-
-/// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Suite {
-    /// Stockinette of 20 × 20 stitches pulled by 20 % in 0.2 s
-    Pull,
-}
 
 /// Stitches on each side.
 const SIDE: usize = 20;
@@ -33,14 +24,8 @@ const STEP: f64 = 0.01;
 /// Stiffness of what holds each node at the sides [N/m].
 const STIFFNESS: f64 = 10.0;
 
-/// Measures and prints.
-pub fn run(suite: Suite, print: Output) -> Result<()> {
-    match suite {
-        Suite::Pull => pull(print),
-    }
-}
-
-fn pull(print: Output) -> Result<()> {
+/// Pulls and measures.
+pub fn run(print: Output) -> Result<()> {
     let stitches = rectangle(SIDE, SIDE, StitchSize::of_width(LOOP))?;
     let net = Arc::new(lay(&stitches));
     let jaw = |column: usize, name: &str, side: f64| {
@@ -69,10 +54,10 @@ fn pull(print: Output) -> Result<()> {
     let facts = simulator.facts();
     let loops = SIDE * SIDE;
     let cost = cpu_s / (loops as f64 * simulator.time_s());
-    let state = simulator.state();
+    let (state, stages) = (simulator.state(), stages_ms(&simulator));
     let json = json!({
         "loops": loops,
-        "solver": facts.solver,
+        "solver": solver(&simulator),
         "steps": facts.steps,
         "time_step_s": STEP,
         "cpu_s_per_stitch_and_sim_s": cost,
@@ -80,11 +65,14 @@ fn pull(print: Output) -> Result<()> {
         "min_yarn_distance_over_diameter": facts.min_yarn_distance_over_diameter,
         "finite": state.is_finite(),
         "rejected_steps": facts.rejected_steps,
+        "stages_ms": stages,
     });
     let text = format!(
-        "{loops} loops on the {}: {cost:.4} s of processor per stitch and simulated second\n\
+        "{loops} loops, {} solver: {cost:.5} s of processor per stitch and simulated second\n\
+         a step: {} ms\n\
          largest stretch {:.4}, least yarn distance {:.3} diameters, {} of {} steps taken again",
-        facts.solver,
+        solver(&simulator),
+        stages_text(&stages),
         facts.max_stretch,
         facts.min_yarn_distance_over_diameter,
         facts.rejected_steps,
