@@ -16,7 +16,7 @@
 //! other, as if the fabric were open.
 
 /// Kinematic viscosity of air at 20 °C, ν [m²/s].
-const VISCOSITY: f64 = 1.5e-5;
+pub(crate) const VISCOSITY: f64 = 1.5e-5;
 
 /// c, drag per length and velocity on a yarn of `diameter` [m] at `speed` [m/s] in air of `density` [kg/m³] [kg/(m s)].
 pub(crate) fn drag(density: f64, diameter: f64, speed: f64) -> f64 {

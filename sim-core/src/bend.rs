@@ -20,7 +20,7 @@ use crate::local::{Element, LEAST_LENGTH, Local, point, put};
 use glam::DVec3;
 
 /// Stiffness of jamming over stiffness of bending, k_j/k_b.
-const JAM_FACTOR: f64 = 1000.0;
+pub(crate) const JAM_FACTOR: f64 = 1000.0;
 
 /// Bending over three visits (x₀, u₀, x₁, u₁, x₂, u₂); u₁ has no part in it.
 #[derive(Clone, Copy, Debug)]

@@ -18,6 +18,10 @@ use crate::body::Placed;
 use crate::local::{Element, Local, point, put};
 use glam::DVec3;
 
+/// The most drag along a surface, in masses of the node per step: a hundred stop a node as good as wholly; more would only spoil
+/// the matrix.
+pub(crate) const MOST_DRAG: f64 = 100.0;
+
 /// Contact of a node with a body over (x), taken up whatever the sign of the gap; see the module.
 #[derive(Clone, Copy)]
 pub(crate) struct BodyContact<'a> {
@@ -40,8 +44,7 @@ impl BodyContact<'_> {
     pub fn drag(&self, (gap, normal): (f64, DVec3), v: DVec3, mass: f64, h: f64) -> f64 {
         let press = self.body.friction() * self.stiffness * (-gap).max(0.0);
         let slip = (v - v.dot(normal) * normal).length();
-        // A hundred masses per step stop a node as good as wholly; more would only spoil the matrix.
-        (press / slip.max(1e-12)).min(100.0 * mass / h)
+        (press / slip.max(1e-12)).min(MOST_DRAG * mass / h)
     }
 }
 

@@ -77,6 +77,13 @@ impl ClosedMesh {
         &self.triangles
     }
 
+    /// The grid of distances: its lowest corner, the side of a cell [m], corners along each axis, and the distances there, x
+    /// running fastest [m].
+    pub(crate) fn grid(&self) -> (DVec3, f64, UVec3, &[f32]) {
+        let Field { low, cell, corners, distance } = &*self.field;
+        (*low, *cell, *corners, distance)
+    }
+
     /// The box around the grid [m].
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         let Field { low, cell, corners, .. } = &*self.field;

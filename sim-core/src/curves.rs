@@ -32,15 +32,26 @@ pub fn curves(net: &YarnNet, state: &YarnState, materials: &Materials) -> YarnCu
     let middles: HashMap<(VisitId, VisitId), DVec3> =
         net.contacts.iter().flat_map(|c| middles(net, state, &normals, c, &radii)).collect();
 
+    let middle = |a, b| middles.get(&(a, b)).or_else(|| middles.get(&(b, a))).map(|m| m.as_vec3());
+    string_together(net, materials, &|visit| Some(at(visit).as_vec3()), &middle)
+}
+
+/// The curves through the points of visits and those in the middle of stitch contacts.
+pub(crate) fn string_together(
+    net: &YarnNet,
+    materials: &Materials,
+    at: &dyn Fn(VisitId) -> Option<Vec3>,
+    middle: &dyn Fn(VisitId, VisitId) -> Option<Vec3>,
+) -> YarnCurves {
+    let radii = radii(net, materials);
     let curve = |yarn: &stitch_mesh::yarn_net::Yarn| {
         let mut points = Vec::with_capacity(2 * yarn.visits.len());
         let mut dyes = Vec::with_capacity(2 * yarn.visits.len());
         let mut drawn = Vec::with_capacity(2 * yarn.visits.len());
         for visit in yarn.visits.clone().map(VisitId) {
-            points.push(at(visit).as_vec3());
+            points.extend(at(visit));
             let Some(next) = net.next(visit) else { continue };
-            let middle = middles.get(&(visit, next)).or_else(|| middles.get(&(next, visit)));
-            points.extend(middle.map(|m| m.as_vec3()));
+            points.extend(middle(visit, next));
             dyes.resize(points.len(), net.visits[visit.index()].dye);
             drawn.resize(points.len(), radii[visit.index()] as f32);
         }

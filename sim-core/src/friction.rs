@@ -28,7 +28,7 @@ use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::YarnNet;
 
 /// Sweeps of projected Gauss–Seidel at most; five yarns need some thirty for 1e-12.
-const SWEEPS: usize = 100;
+pub(crate) const SWEEPS: usize = 100;
 
 /// One number or vector for each yarn or contact of a stack.
 pub(crate) type PerYarn<T> = SmallVec<[T; 4]>;

@@ -25,10 +25,10 @@ use glam::DVec3;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Share of the distance at which two nodes were laid that they keep at least.
-const NEAREST: f64 = 0.5;
+pub(crate) const NEAREST: f64 = 0.5;
 
 /// How far pairs are looked for at most, over the distance of touching: what comes from further away in one step is not seen.
-const FARTHEST: f64 = 4.0;
+pub(crate) const FARTHEST: f64 = 4.0;
 
 /// Two nodes that press each other.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,7 +14,7 @@ use crate::local::{LEAST_LENGTH, point};
 
 /// Part of the mass at a node that its sliding coordinates get besides. At 0 the matrix is singular; at 0.1 the pieces of
 /// yarn between two nodes visibly lag behind.
-const SLIDING_MASS: f64 = 1e-3;
+pub(crate) const SLIDING_MASS: f64 = 1e-3;
 
 /// The mass matrix of a segment over (x₀, u₀, x₁, u₁) for `density` ρ [kg/m]; symmetric, positive definite [kg].
 #[inline(always)]

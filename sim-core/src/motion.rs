@@ -49,6 +49,11 @@ impl Pose {
     /// Nothing moved.
     pub const IDENTITY: Self = Self { rotation: DQuat::IDENTITY, shift: DVec3::ZERO };
 
+    /// R.
+    pub(crate) fn rotation(&self) -> DQuat {
+        self.rotation
+    }
+
     /// Where a point of the resting thing is.
     pub fn apply(&self, x: DVec3) -> DVec3 {
         self.rotation * x + self.shift

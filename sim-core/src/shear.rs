@@ -19,7 +19,7 @@ use crate::local::{Element, LEAST_LENGTH, Local, point, put};
 use glam::DVec3;
 
 /// Stiffness of jamming over stiffness of shear, k_j/k_x.
-const JAM_FACTOR: f64 = 1000.0;
+pub(crate) const JAM_FACTOR: f64 = 1000.0;
 
 /// Shear over (x₁, x₀, x₀', x₂).
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@ use crate::costs::{Costs, Work};
 use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
+use crate::gpu::GpuError;
 use crate::local::LEAST_LENGTH;
 use crate::material::MaterialError;
 use crate::materials::Materials;
@@ -23,14 +24,14 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
 /// it curls would hang on rounding.
-const NOISE: f64 = 1e-6;
+pub(crate) const NOISE: f64 = 1e-6;
 
 /// Halvings of the time step before a simulation is given up; the last is a thousandth of the first.
-const MOST_HALVINGS: i32 = 10;
+pub(crate) const MOST_HALVINGS: i32 = 10;
 
 /// Growth of the time step from step to step after it had to be halved. What made one fail lasts for a few: of a thousand random
 /// swatches 2.1 steps in a hundred were taken again with 2.
-const GROWTH: f64 = 1.4;
+pub(crate) const GROWTH: f64 = 1.4;
 
 /// Steps between two looks at the kinetic energy while settling.
 const SETTLE_INTERVAL: u64 = 10;
@@ -73,6 +74,9 @@ pub enum SimError {
     /// The operation.
     #[error(transparent)]
     Surgery(#[from] SurgeryError),
+    /// The GPU.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
     /// No time step is small enough. The state is that of the last good step.
     #[error("stuck at {time_s:.3} s: even a step of {step_s:.1e} s fails, because {cause}")]
     Stuck {
@@ -220,14 +224,7 @@ impl Simulator {
     /// Changes the net while it is simulated. Pins on nodes that go are dropped. Nothing has changed after an error.
     pub fn operate(&mut self, operation: Operation) -> Result<(), SimError> {
         let done = surgery::operate(self.net(), self.state(), &operation)?;
-        let mut model = Model::new(Arc::new(done.net))?;
-        check_state(&model, &done.state)?;
-        let before = self.net();
-        model.ease(&done.state, |visits| {
-            let was = visits.map(|v| done.was[v.index()].map(|(old, _)| old));
-            let followed = |a: Option<VisitId>, b| a.is_some() && a.and_then(|a| before.next(a)) == b;
-            !(followed(was[0], was[1]) && followed(was[1], was[2]))
-        });
+        let model = model_after(self.net(), Arc::new(done.net), &done.state, &done.was)?;
         let stepper = Stepper::new(model, &self.materials, self.method);
         let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
         self.surgery.add(operation, self.state().taken_in);
@@ -396,7 +393,24 @@ impl Simulator {
     }
 }
 
-fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {
+/// The elements of a net that has been made of another, whose new bends are eased; `was` tells which visit each one was.
+pub(crate) fn model_after(
+    before: &YarnNet,
+    net: Arc<YarnNet>,
+    state: &YarnState,
+    was: &[Option<(VisitId, f64)>],
+) -> Result<Model, SimError> {
+    let mut model = Model::new(net)?;
+    check_state(&model, state)?;
+    model.ease(state, |visits| {
+        let was = visits.map(|v| was[v.index()].map(|(old, _)| old));
+        let followed = |a: Option<VisitId>, b| a.is_some() && a.and_then(|a| before.next(a)) == b;
+        !(followed(was[0], was[1]) && followed(was[1], was[2]))
+    });
+    Ok(model)
+}
+
+pub(crate) fn check_state(model: &Model, state: &YarnState) -> Result<(), SimError> {
     let net = &model.net;
     if !state.fits(net) {
         return Err(SimError::StateShape {

@@ -44,6 +44,9 @@ pub enum Rejection {
     /// The ends of a segment would move against each other by more than half its length.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
+    /// More layers of the fabric meet than the GPU has room for.
+    #[error("more layers of the fabric meet than there is room for")]
+    Crowded,
 }
 
 /// The pieces of a simulator that a step works on.
@@ -52,7 +55,7 @@ pub(crate) struct Stepper {
     pub system: System,
     pub solver: Solver,
     /// Of each colour of the model.
-    materials: Vec<Material>,
+    pub(crate) materials: Vec<Material>,
     /// Mass of the yarn around each node [node_count] [kg].
     pub masses: Vec<f64>,
     /// Distance that each node keeps from bodies, half of that from other layers [node_count] [m].
@@ -142,7 +145,7 @@ impl Stepper {
     }
 
     /// Compression from the forces just assembled, and the friction springs that it carries. Gives the moved anchors.
-    fn add_friction(&mut self, now: &Stuck, h: f64) -> Anchors {
+    pub(crate) fn add_friction(&mut self, now: &Stuck, h: f64) -> Anchors {
         let mut anchors = now.anchors.clone();
         let (slid, rate) = (&now.state.sliding, &now.state.sliding_velocity);
         let Self { model, system, materials, stacks, .. } = self;
@@ -180,7 +183,7 @@ impl Stepper {
     }
 
     /// Layers of the fabric that lie on each other.
-    fn add_layers(&mut self, state: &YarnState, scene: &Scene, h: f64) {
+    pub(crate) fn add_layers(&mut self, state: &YarnState, scene: &Scene, h: f64) {
         let contact = LayerContact {
             clearances: &self.clearances,
             masses: &self.masses,
@@ -233,7 +236,7 @@ impl Stepper {
     }
 
     /// The velocities of nodes and the rates of sliding coordinates as one vector of unknowns.
-    fn rates(&self, state: &YarnState) -> Vec<f64> {
+    pub(crate) fn rates(&self, state: &YarnState) -> Vec<f64> {
         let mut rates = vec![0.0; self.model.dof_count()];
         for (start, v) in self.model.start.iter().zip(&state.velocity) {
             rates[*start as usize..*start as usize + 3].copy_from_slice(&v.to_array());

@@ -9,10 +9,11 @@
 use crate::friction::{Anchors, Stack};
 use crate::model::Model;
 use std::sync::Arc;
+use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// How long taking in takes [s].
-const TIME: f64 = 0.4;
+pub(crate) const TIME: f64 = 0.4;
 
 /// What is taken in of a net.
 #[derive(Clone, Debug, Default)]
@@ -56,14 +57,26 @@ impl TakeIn {
             return;
         }
         let net = model.net.clone();
-        let shorter =
-            |visit: stitch_mesh::ids::VisitId| part * self.of_yarn[net.visits[visit.index()].yarn.index()];
+        let shorter = |visit: VisitId| part * self.of_yarn[net.visits[visit.index()].yarn.index()];
         for segment in &mut model.segments {
             shorten(&mut segment.stencil.turn, shorter(segment.stencil.visits[0]));
         }
         for bend in &mut model.bends {
             shorten(&mut bend.stencil.turn, shorter(bend.stencil.visits[0]));
         }
+    }
+
+    /// By how much the sliding coordinate of a visit goes down in all [m].
+    pub fn total(&self, visit: VisitId) -> f64 {
+        self.total.get(visit.index()).copied().unwrap_or_default()
+    }
+
+    /// By how much the yarn from one visit to another becomes shorter in all, `around` where a closed yarn meets its beginning in
+    /// between [m].
+    pub fn taken(&self, net: &YarnNet, from: VisitId, to: VisitId, around: bool) -> f64 {
+        let yarn = net.visits[from.index()].yarn;
+        let of_yarn = self.of_yarn.get(yarn.index()).copied().unwrap_or_default();
+        self.total(to) - self.total(from) + if around { of_yarn } else { 0.0 }
     }
 
     /// The net with `part` of it taken in for good and no more to come; none if there is nothing to take in.

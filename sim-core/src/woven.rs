@@ -39,13 +39,13 @@ pub(crate) struct ShearTerm {
     /// φ₀ [rad].
     pub rest: f64,
     /// Length of either piece when laid [m].
-    length: [f64; 2],
+    pub length: [f64; 2],
     /// c of either piece [m].
-    climb: [f64; 2],
+    pub climb: [f64; 2],
     /// Part that this term has in the pull of either piece: there are as many terms with it as the other yarn has pieces here.
-    share: [f64; 2],
+    pub share: [f64; 2],
     /// +1 where the turn from the first piece to the second is counter-clockwise seen from the front, else −1.
-    sense: f64,
+    pub sense: f64,
 }
 
 impl ShearTerm {

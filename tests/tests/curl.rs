@@ -71,7 +71,6 @@ fn hem_and_collar_of_stockinette_roll_to_the_outside_and_those_of_garter_do_not(
     let garter = garter.apply(&stockinette).unwrap();
     let [hem, collar] = hem_and_collar(&stockinette);
     let [flat_hem, flat_collar] = hem_and_collar(&garter);
-    println!("stockinette {hem:.1} {collar:.1}, garter {flat_hem:.1} {flat_collar:.1}");
-    assert!(hem > 30.0 && collar > 6.0);
-    assert!(flat_hem.abs() < 10.0 && flat_collar.abs() < 4.0);
+    assert!(hem > 30.0 && collar > 6.0, "stockinette {hem:.1}° {collar:.1}°");
+    assert!(flat_hem.abs() < 10.0 && flat_collar.abs() < 4.0, "garter {flat_hem:.1}° {flat_collar:.1}°");
 }

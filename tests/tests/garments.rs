@@ -18,7 +18,6 @@ fn a_garment_comes_in_any_number_of_loops() {
         let project = sweater.of_loops(loops).unwrap();
         let fabric = project.fabric().unwrap();
         let got = fabric.stitches.loop_count() as f64;
-        println!("{got} loops for {loops}");
         assert!((0.93..1.07).contains(&(got / loops as f64)), "{got} loops for {loops}");
         // Sides, shoulders, two halves of each armhole, along both sleeves.
         assert_eq!(fabric.stitches.seams().len(), 10);
@@ -86,7 +85,6 @@ fn the_sweater_is_worn_and_its_seams_hold() {
     let facts = simulator.facts();
     let gap = |simulator: &Simulator| widest_gap(&sewn.stitches, simulator, project.size.width);
     let lowest = |s: &Simulator| s.state().position.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
-    println!("sewn: {:.2} stitches apart, lowest {:.3} m, {facts:?}", gap(&simulator), lowest(&simulator));
     assert!(gap(&simulator) < 3.0 && lowest(&simulator) > -0.1);
     assert!(facts.max_stretch < 0.02 && facts.max_penetration_mm < 3.0 && facts.rejected_steps < 5);
     // Without its seams it comes off her.
@@ -94,6 +92,5 @@ fn the_sweater_is_worn_and_its_seams_hold() {
     let edges: Vec<[VertexId; 2]> = stitches.seams().iter().map(|s| [s.a[0], s.a[1]]).collect();
     assert_eq!(stitches.unsew(&edges), 10);
     let simulator = worn(&project, &Fabric::new(stitches));
-    println!("open: {:.2} stitches apart, lowest {:.3} m", gap(&simulator), lowest(&simulator));
     assert!(gap(&simulator) > 6.0);
 }

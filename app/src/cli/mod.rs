@@ -304,9 +304,9 @@ fn run(arguments: Arguments) -> Result<()> {
             project.save(&output)?;
             report(&project, print)
         }
-        Verb::Simulate { project, output, scene, seconds, solver: Solver::Cpu, frames, print } => {
+        Verb::Simulate { project, output, scene, seconds, solver, frames, print } => {
             let opened = Project::open(&project)?;
-            let project = simulate::simulate(opened, scene.as_deref(), seconds, frames.as_deref())
+            let project = simulate::simulate(opened, scene.as_deref(), seconds, solver, frames.as_deref())
                 .with_context(|| project.display().to_string())?;
             project.save(&output)?;
             report(&project, print)

@@ -2,6 +2,7 @@
 
 use super::interrupt::{interrupted, progress_bar, step_counter};
 use super::picture;
+use super::values::Solver;
 use crate::drawing::Stage;
 use crate::fabric::Moved;
 use crate::project::Project;
@@ -10,9 +11,10 @@ use crate::scenes;
 use anyhow::{Result, bail};
 use render::{Gpu, NamedView};
 use sim_core::mesh_relax::RelaxParams;
-use sim_core::{Scene, SettleGoal, Settled, Simulator};
+use sim_core::{GpuDevice, GpuSimulator, Scene, SettleGoal, Settled, SimError, Simulator};
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Speed under which a fabric counts as at rest [m/s]: a loop's width in ten seconds or so.
 const STILL: f64 = 1e-3;
@@ -66,6 +68,7 @@ pub fn simulate(
     mut project: Project,
     scene: Option<&str>,
     seconds: f64,
+    solver: Solver,
     frames: Option<&Path>,
 ) -> Result<Project> {
     if !(seconds > 0.0 && seconds <= 3600.0) {
@@ -74,35 +77,28 @@ pub fn simulate(
     if let Some(name) = scene {
         project.scene = scenes::scene(name, project.fabric()?, &project.materials.base)?;
     }
-    let mut simulator = start(&project, &project.scene)?;
+    let mut running = Running::start(&project, solver)?;
     let camera =
         frames.map(|folder| std::fs::create_dir_all(folder).map(|()| Gpu::headless())).transpose()?;
     let gpu = camera.transpose()?;
     let bar = progress_bar(seconds, "simulating")?;
     let mut frame = 0;
-    while simulator.time_s() < seconds - 1e-9 {
+    while running.time_s() < seconds - 1e-9 {
         if interrupted() {
-            bail!("stopped at {:.3} s; nothing was written", simulator.time_s());
+            bail!("stopped at {:.3} s; nothing was written", running.time_s());
         }
         if let (Some(folder), Some(gpu)) = (frames, &gpu)
-            && simulator.time_s() >= f64::from(frame) * FRAME
+            && running.time_s() >= f64::from(frame) * FRAME
         {
             let path = folder.join(format!("{frame:05}.png"));
-            picture(
-                gpu,
-                &moved(&project, &simulator)?,
-                Stage::Yarn,
-                NamedView::ThreeQuarter,
-                [960, 720],
-                &path,
-            )?;
+            picture(gpu, &running.moved(&project)?, Stage::Yarn, NamedView::ThreeQuarter, [960, 720], &path)?;
             frame += 1;
         }
-        simulator.step()?;
-        bar.set_position((1e3 * simulator.time_s()) as u64);
+        running.step(&project)?;
+        bar.set_position((1e3 * running.time_s()) as u64);
     }
     bar.finish_and_clear();
-    moved(&project, &simulator)
+    running.moved(&project)
 }
 
 fn start(project: &Project, scene: &Scene) -> Result<Simulator> {
@@ -116,4 +112,81 @@ fn moved(project: &Project, simulator: &Simulator) -> Result<Project> {
     let mut after = project.clone();
     after.take_over(Moved::by(simulator, project.fabric()?.net()), Some(simulator.facts()));
     Ok(after)
+}
+
+/// A simulation where it was asked for, or on the CPU once the GPU has failed.
+enum Running {
+    Cpu {
+        simulator: Box<Simulator>,
+        /// Simulated time before it took over [s].
+        before: f64,
+    },
+    Gpu(Box<GpuSimulator>),
+}
+
+impl Running {
+    /// The project's fabric in its scene.
+    fn start(project: &Project, solver: Solver) -> Result<Self> {
+        let Solver::Gpu = solver else {
+            return Ok(Self::Cpu { simulator: Box::new(start(project, &project.scene)?), before: 0.0 });
+        };
+        let fabric = project.fabric()?;
+        let state = (*fabric.state()).clone();
+        let gpu = GpuDevice::open()?;
+        tracing::info!(adapter = gpu.adapter.name, "simulating on the GPU");
+        let materials = project.materials.clone();
+        Ok(Self::Gpu(Box::new(GpuSimulator::new(
+            &gpu,
+            fabric.net(),
+            materials,
+            project.scene.clone(),
+            state,
+        )?)))
+    }
+
+    fn time_s(&self) -> f64 {
+        match self {
+            Self::Cpu { simulator, before } => before + simulator.time_s(),
+            Self::Gpu(simulator) => simulator.time_s(),
+        }
+    }
+
+    /// Goes on by one step. Where the GPU fails, the CPU goes on from the last state that came back from it.
+    fn step(&mut self, project: &Project) -> Result<()> {
+        match self {
+            Self::Cpu { simulator, .. } => {
+                simulator.step()?;
+            }
+            Self::Gpu(gpu) => match gpu.step().and_then(|_| Ok(gpu.keep()?)) {
+                Err(SimError::Gpu(error)) => {
+                    tracing::warn!("{error}; going on on the CPU from {:.3} s", gpu.last_time_s());
+                    let (materials, scene) = (project.materials.clone(), gpu.scene().clone());
+                    let mut simulator =
+                        Simulator::new(gpu.net(), materials, scene, gpu.last_state().clone())?;
+                    simulator.resume_at(gpu.last_time_s());
+                    *self = Self::Cpu { simulator: Box::new(simulator), before: gpu.last_time_s() };
+                }
+                other => other?,
+            },
+        }
+        Ok(())
+    }
+
+    /// The project when the simulation that began with it has come so far.
+    fn moved(&mut self, project: &Project) -> Result<Project> {
+        let gpu = match self {
+            Self::Cpu { simulator, .. } => return moved(project, simulator),
+            Self::Gpu(gpu) => gpu,
+        };
+        let facts = gpu.facts()?;
+        let moved = Moved {
+            from: Arc::clone(project.fabric()?.net()),
+            net: Arc::clone(gpu.net()),
+            surgery: gpu.surgery().clone(),
+            state: Arc::new(gpu.state()?.clone()),
+        };
+        let mut after = project.clone();
+        after.take_over(moved, Some(facts));
+        Ok(after)
+    }
 }

@@ -14,6 +14,8 @@ pub enum RelaxStage {
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Solver {
     Cpu,
+    /// The GPU, and the CPU once that fails
+    Gpu,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

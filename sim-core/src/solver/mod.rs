@@ -28,13 +28,13 @@ mod agreement;
 mod dissection;
 pub(crate) mod factor;
 pub(crate) mod gradients;
-mod groups;
+pub(crate) mod groups;
 pub(crate) mod matrix;
 mod packed;
 mod panel;
 mod parts;
 pub(crate) mod pattern;
-mod product;
+pub(crate) mod product;
 pub(crate) mod tail;
 
 use crate::costs::{Costs, Stage, Watch, Work};
@@ -60,7 +60,7 @@ const CROSSOVER: usize = 1_500;
 
 /// Error at which a solution is good enough, relative to the solution, in the norm of the energy. Hanging stockinette of 24 × 24
 /// stitches is, after 0.2 s and 65 mm, at most 8 µm from where the direct solver has it with 1e-4, and some 100 µm with 1e-3.
-const TOLERANCE: f64 = 5e-4;
+pub(crate) const TOLERANCE: f64 = 5e-4;
 
 /// The same with a complete factorisation, of which each iteration makes the error some hundred times smaller.
 const TOLERANCE_OF_COMPLETE: f64 = 1e-5;

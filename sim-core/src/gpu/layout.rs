@@ -1,0 +1,382 @@
+//! What Rust and WGSL have in common, written once: constants, and records of 4-byte words.
+//!
+//! A record is declared in Rust and its WGSL text generated from the declaration. All fields are `f32` or `u32`, so both
+//! sides agree on every offset, in uniforms and in arrays alike. A test parses what is generated and compares.
+
+use crate::{air, bend, friction, layers, local, mass, shear, surroundings};
+use std::fmt::Write as _;
+
+/// Declares records of words.
+macro_rules! records {
+    ($($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $kind:ident,)* })*) => {
+        $(
+            $(#[$doc])*
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+            pub(crate) struct $name { $($(#[$field_doc])* pub $field: $kind,)* }
+        )*
+
+        /// Name of each record, and name and type of its fields.
+        pub(crate) const RECORDS: &[(&str, &[(&str, &str)])] =
+            &[$((stringify!($name), &[$((stringify!($field), stringify!($kind)),)*]),)*];
+
+        #[cfg(test)]
+        pub(crate) const OFFSETS: &[(&str, usize, &[usize])] =
+            &[$((stringify!($name), size_of::<$name>(), &[$(std::mem::offset_of!($name, $field),)*]),)*];
+    };
+}
+
+records! {
+    /// What is the same for all elements in a step.
+    Params {
+        /// h [s].
+        h: f32,
+        /// The scene's time step, by which bodies are as stiff as they are [s].
+        scene_step: f32,
+        /// Acceleration of gravity [m/s²].
+        gravity_x: f32, gravity_y: f32, gravity_z: f32,
+        /// Where the positions are measured from [m].
+        origin_x: f32, origin_y: f32, origin_z: f32,
+        /// Density of the air [kg/m³].
+        air: f32,
+        /// Part of what is to be taken in that has been.
+        taken_in: f32,
+        /// α of the whole fabric [1/s].
+        mass_damping: f32,
+        /// 1 where nothing but itself touches the fabric.
+        is_free: u32,
+        /// Squared tolerance of conjugate gradients.
+        tolerance: f32,
+        node_count: u32,
+        dof_count: u32,
+        visit_count: u32,
+        body_count: u32,
+        /// The largest distance at which layers touch [m].
+        touching: f32,
+        /// Cells of the grid that near nodes are looked for in.
+        cell_count: u32,
+        /// Places for contacts of layers.
+        contact_capacity: u32,
+        /// Stitch contacts.
+        joint_count: u32,
+    }
+    /// The part of the arrays that one dispatch works on.
+    Part {
+        first: u32,
+        count: u32,
+    }
+    /// How many elements a chunk has, and where their results begin [vec4].
+    Counts {
+        segments: u32,
+        bends: u32,
+        wraps: u32,
+        shears: u32,
+        bends_at: u32,
+        wraps_at: u32,
+        shears_at: u32,
+        first_node: u32,
+        node_count: u32,
+    }
+    /// A yarn; see `material.rs`.
+    Material {
+        density: f32,
+        stretch: f32,
+        bend: f32,
+        wrap: f32,
+        wrap_sin: f32,
+        wrap_cos: f32,
+        wrap_fade: f32,
+        friction: f32,
+        cohesion: f32,
+        stick: f32,
+        length: f32,
+        parallel: f32,
+        parallel_distance: f32,
+        mass_damping: f32,
+        stiffness_damping: f32,
+        diameter: f32,
+        /// 10 (ν/d)^⅔, the share of slow flow in the drag of air.
+        creep: f32,
+    }
+    /// See `SegmentTerm`.
+    Segment {
+        node_0: u32, node_1: u32,
+        visit_0: u32, visit_1: u32,
+        dye: u32,
+        in_contact: u32,
+        /// Its place in the model.
+        id: u32,
+        /// Δu where both have slid by nothing, and how much of that is to be taken in [m].
+        laid: f32,
+        taken: f32,
+        rest: f32,
+        climb: f32,
+        closeness: f32,
+    }
+    /// See `BendTerm`.
+    Bend {
+        node_0: u32, node_1: u32, node_2: u32,
+        visit_0: u32, visit_2: u32,
+        dye: u32,
+        laid: f32,
+        taken: f32,
+        jam_angle: f32,
+    }
+    /// See `WrapTerm`.
+    Wrap {
+        node_0: u32, node_1: u32, node_2: u32, node_3: u32,
+        dye: u32,
+        handedness: f32,
+        rest: f32,
+    }
+    /// See `ShearTerm`.
+    Shear {
+        node_0: u32, node_1: u32, node_2: u32, node_3: u32,
+        visit_0: u32, visit_1: u32, visit_2: u32, visit_3: u32,
+        /// Its place in the model.
+        id: u32,
+        stiffness: f32,
+        length: f32,
+        rest: f32,
+        jam: f32,
+        stiffness_damping: f32,
+        /// Δu of both pieces where nothing has slid, signed [m].
+        laid_0: f32, laid_1: f32,
+        climb_0: f32, climb_1: f32,
+        share_0: f32, share_1: f32,
+        stretch_0: f32, stretch_1: f32,
+        sense: f32,
+    }
+    /// A node's place in the system, and where its lists are.
+    Node {
+        dof: u32,
+        size: u32,
+        /// Its entries in the list of elements around it.
+        entry: u32, entry_end: u32,
+        /// Its blocks in the list of blocks.
+        block: u32, block_end: u32,
+        /// Its rows in the matrix, the column in them with which its own block begins, and how many columns they have.
+        value: u32,
+        own: u32,
+        width: u32,
+        /// Its visits in the list of stacked visits.
+        visit: u32,
+        /// The groups before its own whose elimination changes it.
+        incoming: u32, incoming_end: u32,
+        /// Its neighbours along yarns.
+        around: u32, around_end: u32,
+        /// Radius of the yarns at it, doubled; mass; √μ.
+        clearance: f32,
+        mass: f32,
+        grip: f32,
+        /// Where it was laid and which way was its front.
+        laid_x: f32, laid_y: f32, laid_z: f32,
+        normal_x: f32, normal_y: f32, normal_z: f32,
+    }
+    /// A block of the matrix: the unknowns of its columns, and the row in the front of its group that they are.
+    Block {
+        dof: u32,
+        size: u32,
+        front: u32,
+    }
+    /// The middle of a stitch contact, where yarns pass each other.
+    Joint {
+        node_0: u32, node_1: u32,
+        /// The colour of the new yarn, and those of the old ones in the list of them.
+        dye: u32,
+        old: u32, old_end: u32,
+        /// Its first control point.
+        point: u32,
+        /// Handedness, turned round where the new yarn lies in front.
+        side: f32,
+    }
+    /// A visit in a stack.
+    Stacked {
+        visit: u32,
+        dye: u32,
+        /// Whether the yarn behind it lies parallel.
+        parallel: u32,
+        /// Elements that pull at it, in the list of pulls.
+        pull: u32, pull_end: u32,
+    }
+    /// Unknowns that are eliminated at once; see `gpu/pattern.rs`.
+    Group {
+        /// Its own unknowns.
+        dof: u32,
+        size: u32,
+        /// Later unknowns that it is joined to.
+        row: u32,
+        row_count: u32,
+        /// Its front in the factor.
+        front: u32,
+        /// What it hands on to its rows when solving.
+        handed: u32,
+        node: u32, node_end: u32,
+        source: u32, source_end: u32,
+    }
+    /// An earlier group that changes the front of a group: the rows they share, those that are columns first.
+    Source {
+        group: u32,
+        /// 1 if its front lies in the chunk before.
+        before: u32,
+        /// Its rows in the list of shared rows.
+        first: u32,
+        count: u32,
+        columns: u32,
+    }
+    /// Body; see `body.rs`. Kinds are 0 ground, 1 sphere, 2 capsule, 3 box, 4 mesh.
+    Body {
+        kind: u32,
+        friction: f32,
+        a_x: f32, a_y: f32, a_z: f32,
+        b_x: f32, b_y: f32, b_z: f32,
+        /// Radius, or side of a cell of a mesh.
+        size: f32,
+        corners_x: u32, corners_y: u32, corners_z: u32,
+        /// First distance of a mesh in the list of all.
+        field: u32,
+        moves: u32,
+        /// Turn of a box about its centre, and poses at both ends of the step: quaternion, shift.
+        turn_x: f32, turn_y: f32, turn_z: f32, turn_w: f32,
+        from_x: f32, from_y: f32, from_z: f32, from_w: f32,
+        from_shift_x: f32, from_shift_y: f32, from_shift_z: f32,
+        to_x: f32, to_y: f32, to_z: f32, to_w: f32,
+        to_shift_x: f32, to_shift_y: f32, to_shift_z: f32,
+    }
+    /// A spring that holds a node.
+    Pin {
+        node: u32,
+        stiffness: f32,
+        x: f32, y: f32, z: f32,
+    }
+    /// How far conjugate gradients have come.
+    Status {
+        /// Squared error, and what it has to come under.
+        error: f32,
+        goal: f32,
+        alpha: f32,
+        beta: f32,
+        iterations: u32,
+        /// 1 when they are done, 2 when they have failed.
+        solved: u32,
+    }
+    /// The rigid motion of the fabric.
+    Rigid {
+        center_x: f32, center_y: f32, center_z: f32,
+        mass: f32,
+        mean_x: f32, mean_y: f32, mean_z: f32,
+        omega_x: f32, omega_y: f32, omega_z: f32,
+        kept_x: f32, kept_y: f32, kept_z: f32,
+    }
+    /// Two nodes of different layers that press each other, seen from one.
+    Contact {
+        node: u32,
+        normal_x: f32, normal_y: f32, normal_z: f32,
+        /// What goes into the matrix along the normal and across it.
+        along: f32,
+        across: f32,
+    }
+}
+
+/// Unknowns that a group may have: its diagonal block is factorised in workgroup memory.
+pub(crate) const MOST_GROUP: usize = 80;
+
+/// Visits that a node may have.
+pub(crate) const MOST_STACK: usize = 12;
+
+/// Contacts with other layers that a node may have: a ball touches at most twelve others of its size, but contacts are taken up
+/// a step before. A fold of stockinette that closes with 0.2 m/s has up to 20.
+pub(crate) const MOST_CONTACTS: usize = 48;
+
+/// What the count of contacts gets besides where a node has more.
+pub(crate) const CROWDED: u32 = 1 << 30;
+
+/// Numbers that one workgroup adds up.
+pub(crate) const SUM_SPAN: u32 = 1024;
+
+/// Invocations of a workgroup, in kernels that run over elements or unknowns and in those that work on one group.
+pub(crate) const WIDE: u32 = 256;
+pub(crate) const NARROW: u32 = 64;
+
+/// Why a step is rejected.
+pub(crate) const REJECTED_NOT_FINITE: u32 = 1;
+pub(crate) const REJECTED_SHRINKING: u32 = 2;
+pub(crate) const REJECTED_LEAPING: u32 = 3;
+
+/// Kinds of elements in the lists around nodes.
+pub(crate) const OF_SEGMENT: u32 = 0;
+pub(crate) const OF_BEND: u32 = 1;
+pub(crate) const OF_WRAP: u32 = 2;
+pub(crate) const OF_SHEAR: u32 = 3;
+
+/// Vectors of four numbers that each kind of element leaves.
+pub(crate) const SEGMENT_OUT: u32 = 7;
+pub(crate) const BEND_OUT: u32 = 6;
+pub(crate) const WRAP_OUT: u32 = 7;
+pub(crate) const SHEAR_OUT: u32 = 4;
+
+/// Marks what is not there.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// What every kernel begins with.
+pub(crate) fn prelude() -> String {
+    let mut text = String::new();
+    for (name, value) in floats() {
+        let _ = writeln!(text, "const {name}: f32 = {value:e};");
+    }
+    for (name, value) in integers() {
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+    }
+    for (name, fields) in RECORDS {
+        let _ = writeln!(text, "struct {name} {{");
+        for (field, kind) in *fields {
+            let _ = writeln!(text, "    {field}: {kind},");
+        }
+        let _ = writeln!(text, "}}");
+    }
+    text + include_str!("kernels/common.wgsl")
+}
+
+/// Constants of the physics.
+fn floats() -> [(&'static str, f64); 11] {
+    [
+        ("LEAST_LENGTH", local::LEAST_LENGTH),
+        ("BEND_JAM_FACTOR", bend::JAM_FACTOR),
+        ("SHEAR_JAM_FACTOR", shear::JAM_FACTOR),
+        ("SLIDING_MASS", mass::SLIDING_MASS),
+        ("BODY_STIFFNESS", surroundings::BODY_STIFFNESS),
+        ("NEAREST", layers::NEAREST),
+        ("FARTHEST", layers::FARTHEST),
+        ("MOST_DRAG", crate::body_contact::MOST_DRAG),
+        ("VISCOSITY", air::VISCOSITY),
+        ("PI", std::f64::consts::PI),
+        ("HALF_PI", std::f64::consts::FRAC_PI_2),
+    ]
+}
+
+/// Sizes and marks.
+fn integers() -> [(&'static str, u32); 21] {
+    [
+        ("FROZEN", crate::model::FROZEN),
+        ("NONE", NONE),
+        ("MOST_GROUP", MOST_GROUP as u32),
+        ("MOST_TRIANGLE", (MOST_GROUP * (MOST_GROUP + 1) / 2) as u32),
+        ("MOST_STACK", MOST_STACK as u32),
+        ("MOST_CONTACTS", MOST_CONTACTS as u32),
+        ("CROWDED", CROWDED),
+        ("SWEEPS", friction::SWEEPS as u32),
+        ("SUM_SPAN", SUM_SPAN),
+        ("WIDE", WIDE),
+        ("NARROW", NARROW),
+        ("REJECTED_NOT_FINITE", REJECTED_NOT_FINITE),
+        ("REJECTED_SHRINKING", REJECTED_SHRINKING),
+        ("REJECTED_LEAPING", REJECTED_LEAPING),
+        ("OF_SEGMENT", OF_SEGMENT),
+        ("OF_BEND", OF_BEND),
+        ("OF_WRAP", OF_WRAP),
+        ("SEGMENT_OUT", SEGMENT_OUT),
+        ("BEND_OUT", BEND_OUT),
+        ("WRAP_OUT", WRAP_OUT),
+        ("SHEAR_OUT", SHEAR_OUT),
+    ]
+}

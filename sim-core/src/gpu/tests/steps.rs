@@ -1,0 +1,117 @@
+//! Whole steps against those of the CPU.
+
+use super::agreement::pinned;
+use super::{device, ten_fabrics};
+use crate::gpu::GpuSimulator;
+use crate::material::Material;
+use crate::scene::Scene;
+use crate::simulator::{SimError, Simulator};
+use std::sync::Arc;
+use stitch_mesh::yarn_net::{YarnNet, YarnState};
+
+/// How far nodes may be apart after a step, in which they move by some tenths of a millimetre [m]: what conjugate gradients
+/// leave of the error moves them by a thousandth of that.
+const CLOSE: f64 = 2e-6;
+
+/// The largest distance between nodes of two states [m].
+fn apart(a: &YarnState, b: &YarnState) -> f64 {
+    a.position.iter().zip(&b.position).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+}
+
+/// A simulation on the CPU after some steps, and one on the device and on the CPU from there.
+fn both(net: &Arc<YarnNet>, scene: &Scene, steps: usize) -> Option<(Simulator, GpuSimulator)> {
+    let device = device()?;
+    let material = Material::for_loop_width(3e-3);
+    let mut cpu = Simulator::new(net, material.clone(), scene.clone(), net.laid_state()).unwrap();
+    (0..steps).for_each(|_| {
+        cpu.step().unwrap();
+    });
+    let state = cpu.state().clone();
+    let cpu = Simulator::new(net, material.clone(), scene.clone(), state.clone()).unwrap();
+    let gpu = GpuSimulator::new(&device, net, material, scene.clone(), state).unwrap();
+    Some((cpu, gpu))
+}
+
+#[test]
+fn ten_fabrics_at_rest_step_like_on_the_cpu() {
+    for (name, net) in ten_fabrics() {
+        let net = Arc::new(net);
+        let Some((mut cpu, mut gpu)) = both(&net, &pinned(&net), 60) else { return };
+        assert_eq!(cpu.step().unwrap(), gpu.step().unwrap(), "{name}");
+        let difference = apart(cpu.state(), gpu.state().unwrap());
+        println!("{name}: {difference:.1e} m, {} iterations", gpu.iterations());
+        assert!(difference < CLOSE, "{name}: {difference:e}");
+    }
+}
+
+#[test]
+fn a_free_swatch_curls_as_on_the_cpu() {
+    let (_, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    let Some((mut cpu, mut gpu)) = both(&net, &Scene::empty(), 0) else { return };
+    while cpu.time_s() < 0.15 {
+        cpu.step().unwrap();
+    }
+    while gpu.time_s() < 0.15 {
+        gpu.step().unwrap();
+    }
+    let moved = apart(cpu.state(), &net.laid_state());
+    let difference = apart(cpu.state(), gpu.state().unwrap());
+    println!("moved {moved:.1e}, apart {difference:.1e}, rejected {}", gpu.rejected());
+    assert!(moved > 1e-3 && difference < 0.05 * moved);
+}
+
+#[test]
+fn a_step_that_goes_wrong_is_thrown_away() {
+    let (_, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    let Some((_, mut gpu)) = both(&net, &Scene::empty(), 5) else { return };
+    gpu.step().unwrap();
+    let before = gpu.state().unwrap().clone();
+    // Pulled so hard that no step is small enough.
+    let node = net.nodes.len() as u32 / 2;
+    let target = net.nodes[node as usize].position + glam::DVec3::Z;
+    let pins = vec![crate::Pin { node, target, stiffness: 1e9 }];
+    gpu.set_scene(Scene { pins, ..Scene::empty() }).unwrap();
+    let error = gpu.step().unwrap_err();
+    assert!(matches!(error, SimError::Stuck { .. }), "{error}");
+    assert!(apart(&before, gpu.state().unwrap()) == 0.0, "the state is that of the last good step");
+}
+
+#[test]
+fn yarns_are_drawn_as_on_the_cpu() {
+    for (name, net) in ten_fabrics() {
+        let net = Arc::new(net);
+        let Some((cpu, mut gpu)) = both(&net, &pinned(&net), 10) else { return };
+        let ours = crate::curves(&net, cpu.state(), cpu.materials());
+        let theirs = gpu.curves().unwrap();
+        assert_eq!(ours.curves.len(), theirs.curves.len(), "{name}");
+        let mut worst = 0.0_f32;
+        for (a, b) in ours.curves.iter().zip(&theirs.curves) {
+            assert_eq!((a.points.len(), &a.radii, &a.dyes), (b.points.len(), &b.radii, &b.dyes), "{name}");
+            worst = a.points.iter().zip(&b.points).map(|(a, b)| a.distance(*b)).fold(worst, f32::max);
+        }
+        println!("{name}: {worst:.1e} m");
+        // A thousandth of the yarn's radius.
+        assert!(worst < 4e-7, "{name}: {worst:e}");
+    }
+}
+
+#[test]
+fn a_cut_goes_on_as_on_the_cpu() {
+    let (_, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    let Some((mut cpu, mut gpu)) = both(&net, &pinned(&net), 20) else { return };
+    let cut = crate::Operation::Cut(stitch_mesh::ids::VisitId(40));
+    cpu.operate(cut.clone()).unwrap();
+    gpu.operate(cut).unwrap();
+    for _ in 0..3 {
+        cpu.step().unwrap();
+        gpu.step().unwrap();
+    }
+    assert_eq!(cpu.net().yarns.len(), gpu.net().yarns.len());
+    assert_eq!(gpu.surgery().operations.len(), cpu.surgery().operations.len());
+    let difference = apart(cpu.state(), gpu.state().unwrap());
+    println!("{difference:.1e} m");
+    assert!(difference < 10.0 * CLOSE);
+}
