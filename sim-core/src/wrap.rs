@@ -12,7 +12,8 @@
 //! - stiffness k_w L (s_a² s_b² ∇φ ∇φᵀ − cos₊φ (s_a'' s_b ∇h_a ∇h_aᵀ + s_a s_b'' ∇h_b ∇h_bᵀ)), s'' ≤ 0. It is the Hessian
 //!   itself at rest away from the axis.
 //!
-//! k_w and |ψ₀| are those of the material, or what a stitch makes of them ([`stitch_mesh::wrapping`]): m k_w, and an angle of its own.
+//! k_w and |ψ₀| are those of the material, or what a stitch makes of them: m k_w, and an angle of its own
+//! ([`stitch_mesh::wrapping`]).
 //!
 //! # Differences from the paper
 //! - ψ is signed. The paper's arccos cannot tell a knit from a purl, which differ in nothing but this sign.

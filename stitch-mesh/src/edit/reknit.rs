@@ -32,8 +32,8 @@ struct NewFace {
 }
 
 impl StitchMesh {
-    /// Knits blocks anew. They must not overlap. New stitches have colour and wrapping of the old one in the same place; marks outside of
-    /// the blocks stay, cables inside go.
+    /// Knits blocks anew. They must not overlap. New stitches have colour and wrapping of the old one in the same place; marks
+    /// outside of the blocks stay, cables inside go.
     ///
     /// # Errors
     /// [`EditError`]: rows that do not fit a block, or a cable that cannot cross.
