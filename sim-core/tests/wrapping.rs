@@ -87,6 +87,6 @@ fn stockinette_curls_where_its_stitches_are_wrapped() {
     let [left, right] = turns(stockinette(wide, high));
     let [still, flat] = turns(wrapped(wide, high, slack, |column| column >= wide / 2));
     println!("left {left:.1} right {right:.1}, right half slack: left {still:.1} right {flat:.1}");
-    assert!(left > 20.0 && right > 20.0 && still > 20.0);
+    assert!(left > 15.0 && right > 15.0 && still > 15.0);
     assert!(flat < 5.0);
 }

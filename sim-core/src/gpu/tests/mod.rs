@@ -43,8 +43,8 @@ fn ten_fabrics() -> Vec<(&'static str, YarnNet)> {
     let lace =
         |t: usize| if t.is_multiple_of(2) { row(&["k"; 6]) } else { row(&["d21k", "ky", "d21k", "ky"]) };
     let narrow = [row(&["k"; 9]), row(&["d123k"; 3]), row(&["k"; 3]), row(&["kpk"; 3])];
-    let mut seed = flat(&|s, t| ["k", "p"][(s + t) % 2]);
-    for contact in seed.contacts.iter_mut().step_by(3) {
+    let mut garter = flat(&|_, t| ["k", "p"][t % 2]);
+    for contact in garter.contacts.iter_mut().step_by(3) {
         contact.wrapping = Wrapping { modulus: 2.0, angle: Some(0.6) };
     }
     let draft = "twill".parse().unwrap();
@@ -53,9 +53,9 @@ fn ten_fabrics() -> Vec<(&'static str, YarnNet)> {
         Woven { draft, ends: 6, picks: 5, spacing: 2e-3, warp, weft, middle: glam::DVec3::ZERO, flat: false };
     vec![
         ("stockinette", flat(&|_, _| "k")),
-        ("garter", flat(&|_, t| ["k", "p"][t % 2])),
+        ("garter of two wrappings", garter),
         ("rib", flat(&|s, _| ["k", "k", "p"][s % 3])),
-        ("seed of two wrappings", seed),
+        ("seed", flat(&|s, t| ["k", "p"][(s + t) % 2])),
         ("lace", lay(&from_rows(&(0..5).map(lace).collect::<Vec<_>>(), size).unwrap())),
         ("stacks", lay(&from_rows(&narrow, size).unwrap())),
         ("cable", lay(&of_cable(&[(0, Cable::cross(vec![], 2, 2, true))], 5, size).unwrap())),
