@@ -25,6 +25,7 @@ use stitch_mesh::obj::{Unit, read_obj};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::{Place, StitchMesh};
 use stitch_mesh::weave::Woven;
+use stitch_mesh::wrapping::Wrapping;
 use stitch_mesh::yarn_net::YarnState;
 
 /// Version of the file that this program writes, and the newest that it reads.
@@ -173,6 +174,9 @@ struct FileFabric {
     /// [face_count]; absent where nothing is dyed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     dyes: Option<Vec<Dye>>,
+    /// [face_count]; absent where all stitches are wrapped as their material has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    wrappings: Option<Vec<Wrapping>>,
     /// [face_count]; absent where no stitch was cut from the input.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     places: Option<Vec<Option<Place>>>,
@@ -201,11 +205,13 @@ impl FileMesh {
 impl FileFabric {
     fn of(fabric: &Fabric) -> Self {
         let stitches = &fabric.stitches;
-        let (dyes, places, marks) = (stitches.dyes(), stitches.places(), stitches.marks());
+        let (dyes, wrappings) = (stitches.dyes(), stitches.wrappings());
+        let (places, marks) = (stitches.places(), stitches.marks());
         Self {
             mesh: FileMesh::of(stitches.mesh()),
             stitches: stitches.stitches().to_vec(),
             dyes: dyes.iter().any(|d| *d != Dye::UNDYED).then(|| dyes.to_vec()),
+            wrappings: wrappings.iter().any(|w| *w != Wrapping::OF_MATERIAL).then(|| wrappings.to_vec()),
             places: places.iter().any(Option::is_some).then(|| places.to_vec()),
             marks: Some(marks).filter(|m| **m != Marks::default()).cloned(),
             rest_shape: fabric.rest_shape.as_deref().cloned(),
@@ -224,6 +230,7 @@ impl FileFabric {
             let faces = mesh.face_count();
             StitchMesh::new(mesh, self.stitches)?.with(
                 self.dyes.unwrap_or_else(|| vec![Dye::UNDYED; faces]),
+                self.wrappings.unwrap_or_else(|| vec![Wrapping::OF_MATERIAL; faces]),
                 self.places.unwrap_or_else(|| vec![None; faces]),
                 self.marks.unwrap_or_default(),
             )?

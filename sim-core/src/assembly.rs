@@ -434,11 +434,15 @@ mod tests {
     use crate::solver::pattern::Pattern;
     use std::sync::Arc;
     use stitch_mesh::dye::Dye;
-    use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube, weave::Woven};
+    use stitch_mesh::{edge_counts::StitchSize, lay::lay, pieces::tube, weave::Woven, wrapping::Wrapping};
 
-    /// A tube, so that the seam of closed yarns is in it, and woven cloth, crumpled and with their yarn slid.
+    /// A tube, so that the seam of closed yarns is in it, some of it wrapped otherwise than its material has it, and woven cloth,
+    /// crumpled and with their yarn slid.
     fn crumpled() -> (Model, YarnState) {
         let mut net = lay(&tube(5, 3, StitchSize::of_width(3e-3)).unwrap());
+        for contact in net.contacts.iter_mut().step_by(3) {
+            contact.wrapping = Wrapping { modulus: 20.0, angle: Some(0.6) };
+        }
         let (draft, middle) = ("twill".parse().unwrap(), DVec3::X);
         let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(Dye);
         let cloth = Woven { draft, ends: 5, picks: 4, spacing: 2e-3, warp, weft, middle, flat: false };

@@ -16,8 +16,8 @@
 //!
 //! # Practice
 //! A model holds what follows from the net alone: who takes part, rest lengths and rest angles. Stiffnesses come from the
-//! [`Material`] of the element's yarn when it is evaluated, so changing a material rebuilds nothing. It lives as long as
-//! its net.
+//! [`Material`] of the element's yarn when it is evaluated, so changing a material rebuilds nothing; a stitch may alter what its
+//! material says of wrapping ([`WrapTerm::wrap`]). It lives as long as its net.
 
 use crate::bend::Bend;
 use crate::material::Material;
@@ -33,6 +33,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::{NodeId, VisitId};
+use stitch_mesh::wrapping::Wrapping;
 use stitch_mesh::yarn_net::{NodeKind, YarnNet, YarnState};
 
 /// Angle between a bend at rest and the onset of its jamming [rad].
@@ -173,15 +174,18 @@ pub(crate) struct WrapTerm {
     pub dye: u32,
     /// σ, the handedness of the contact.
     pub handedness: f64,
+    /// What its stitch makes of stiffness and rest angle.
+    pub wrapping: Wrapping,
     /// L, rest length of the contact [m].
     pub rest: f64,
 }
 
 impl WrapTerm {
     pub fn wrap(&self, material: &Material) -> Wrap {
+        let Wrapping { modulus, angle } = self.wrapping;
         Wrap {
-            stiffness: material.wrap_stiffness * self.rest,
-            rest: self.handedness * material.wrap_angle,
+            stiffness: modulus * material.wrap_stiffness * self.rest,
+            rest: self.handedness * angle.unwrap_or(material.wrap_angle),
             fade: material.wrap_fade,
         }
     }
@@ -399,6 +403,7 @@ fn wraps(net: &YarnNet, segments: &[SegmentTerm]) -> Vec<WrapTerm> {
                     stencil,
                     dye: new.dye,
                     handedness: contact.handedness,
+                    wrapping: contact.wrapping,
                     rest: new.rest,
                 });
             }

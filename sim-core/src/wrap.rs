@@ -12,6 +12,9 @@
 //! - stiffness k_w L (s_a² s_b² ∇φ ∇φᵀ − cos₊φ (s_a'' s_b ∇h_a ∇h_aᵀ + s_a s_b'' ∇h_b ∇h_bᵀ)), s'' ≤ 0. It is the Hessian
 //!   itself at rest away from the axis.
 //!
+//! k_w and |ψ₀| are those of the material, or what a stitch makes of them: m k_w, and an angle of its own
+//! ([`stitch_mesh::wrapping`]).
+//!
 //! # Differences from the paper
 //! - ψ is signed. The paper's arccos cannot tell a knit from a purl, which differ in nothing but this sign.
 //! - The paper's energy is k_w L φ²/2, which 1 − cos φ continues without a jump opposite to the rest angle. In a flat fabric

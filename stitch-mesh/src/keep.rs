@@ -10,8 +10,8 @@ use crate::stitch_mesh::{Place, StitchMesh};
 use std::collections::HashMap;
 
 impl StitchMesh {
-    /// Takes over stitches, colours and marks from an earlier stitch mesh of the same input. Cables, seams and live edges
-    /// come along if all their edges are found again.
+    /// Takes over stitches, colours, wrappings and marks from an earlier stitch mesh of the same input. Cables, seams and live
+    /// edges come along if all their edges are found again.
     pub fn keep_from(&mut self, old: &Self) {
         let mut at: HashMap<Place, _> = HashMap::new();
         for (face, place) in old.mesh().faces().zip(old.places()) {
@@ -26,6 +26,7 @@ impl StitchMesh {
             // A stitch with other numbers of loops, or one that would hold nothing here, stays what it is now.
             if self.set_stitch(face, old.stitch(was).clone()).is_ok() {
                 self.dyes[face.index()] = old.dyes()[was.index()];
+                self.wrappings[face.index()] = old.wrappings()[was.index()];
                 now[was.index()] = Some(face);
             }
         }

@@ -34,5 +34,6 @@ pub mod tessellate;
 pub mod unravel;
 pub mod validate;
 pub mod weave;
+pub mod wrapping;
 pub mod yarn_curves;
 pub mod yarn_net;

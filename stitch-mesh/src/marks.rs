@@ -4,9 +4,10 @@
 
 use crate::cable::{Cable, CableError};
 use crate::dye::Dye;
-use crate::ids::{HalfEdgeId, VertexId};
+use crate::ids::{FaceId, HalfEdgeId, VertexId};
 use crate::seam::{Seam, SeamError, sorted};
 use crate::stitch_mesh::{Place, StitchMesh};
+use crate::wrapping::{Wrapping, WrappingError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -36,7 +37,10 @@ pub enum MarkError {
     /// A live edge that is not a top edge on the border.
     #[error("edge {0}–{1} cannot be left live: only loops at a border above a stitch are on the needle")]
     NotLive(VertexId, VertexId),
-    /// Colours or places that are not one for each face.
+    /// Wrapping that no stitch has.
+    #[error("face {0}: {1}")]
+    Wrapping(FaceId, WrappingError),
+    /// Colours, wrappings or places that are not one for each face.
     #[error("{given} {what} for {faces} faces")]
     Count {
         /// Of what.
@@ -58,23 +62,29 @@ impl StitchMesh {
         &mut self.marks
     }
 
-    /// The same mesh with other colours, places and marks.
+    /// The same mesh with other colours, wrappings, places and marks.
     ///
     /// # Errors
     /// Where one does not fit.
     pub fn with(
         mut self,
         dyes: Vec<Dye>,
+        wrappings: Vec<Wrapping>,
         places: Vec<Option<Place>>,
         marks: Marks,
     ) -> Result<Self, MarkError> {
         let faces = self.mesh().face_count();
-        for (what, given) in [("colours", dyes.len()), ("places", places.len())] {
+        let counts = [("colours", dyes.len()), ("wrappings", wrappings.len()), ("places", places.len())];
+        for (what, given) in counts {
             if given != faces {
                 return Err(MarkError::Count { what, given, faces });
             }
         }
-        (self.dyes, self.places, self.marks) = (dyes, places, Marks::default());
+        for (face, wrapping) in self.mesh().faces().zip(&wrappings) {
+            wrapping.validate().map_err(|error| MarkError::Wrapping(face, error))?;
+        }
+        (self.dyes, self.wrappings, self.places) = (dyes, wrappings, places);
+        self.marks = Marks::default();
         marks.cables.into_iter().try_for_each(|c| self.set_cable(c))?;
         marks.seams.into_iter().try_for_each(|s| self.sew(s))?;
         marks.live.into_iter().try_for_each(|e| self.set_live(e, true))?;

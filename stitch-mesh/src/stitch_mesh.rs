@@ -8,7 +8,8 @@
 //! - Two rows meet course to course: usually tops to bottoms; tops to tops or bottoms to bottoms where the wale directions
 //!   oppose each other (§4.4).
 //!
-//! Beside its stitch a face has the colour of its yarn and, where it was cut from a face of the input, its place there.
+//! Beside its stitch a face has the colour of its yarn, how that is wrapped and, where it was cut from a face of the input, its
+//! place there.
 //! Cables, seams, live edges and the spiral layout are [`Marks`] on edges, named by their vertices.
 //!
 //! Changing the stitch of a face keeps all ids; what changes faces builds a new mesh ([`crate::edit`]).
@@ -19,6 +20,7 @@ use crate::label::Row;
 use crate::marks::Marks;
 use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
+use crate::wrapping::{Wrapping, WrappingError};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -31,6 +33,7 @@ pub struct StitchMesh {
     stitches: Vec<Stitch>,
     /// Colour of the yarn with which each stitch is worked.
     pub(crate) dyes: Vec<Dye>,
+    pub(crate) wrappings: Vec<Wrapping>,
     pub(crate) places: Vec<Option<Place>>,
     pub(crate) marks: Marks,
 }
@@ -90,6 +93,9 @@ pub enum StitchMeshError {
         /// The stitch.
         stitch: String,
     },
+    /// Wrapping that no stitch has.
+    #[error(transparent)]
+    Wrapping(#[from] WrappingError),
     /// A stitch that pulls its yarn through loops, where there are none below.
     #[error("face {face} cannot be {stitch}: there is no loop below it; only yarn-overs begin from nothing")]
     NothingBelow {
@@ -114,6 +120,7 @@ impl StitchMesh {
             mesh: Arc::new(mesh),
             stitches,
             dyes: vec![Dye::UNDYED; faces],
+            wrappings: vec![Wrapping::OF_MATERIAL; faces],
             places: vec![None; faces],
             marks: Marks::default(),
         };
@@ -137,6 +144,7 @@ impl StitchMesh {
             mesh: Arc::new(PolygonMesh::empty()),
             stitches: Vec::new(),
             dyes: Vec::new(),
+            wrappings: Vec::new(),
             places: Vec::new(),
             marks: Marks::default(),
         }
@@ -220,6 +228,21 @@ impl StitchMesh {
     /// There is no such face.
     pub fn set_dye(&mut self, face: FaceId, dye: Dye) -> Result<(), StitchMeshError> {
         *self.dyes.get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? = dye;
+        Ok(())
+    }
+
+    /// How the yarns of the stitches are wrapped around each other, [face_count].
+    pub fn wrappings(&self) -> &[Wrapping] {
+        &self.wrappings
+    }
+
+    /// Changes how the yarns of a stitch are wrapped around each other. All ids survive.
+    ///
+    /// # Errors
+    /// There is no such face, or no stitch is wrapped so; nothing is changed then.
+    pub fn set_wrapping(&mut self, face: FaceId, wrapping: Wrapping) -> Result<(), StitchMeshError> {
+        wrapping.validate()?;
+        *self.wrappings.get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? = wrapping;
         Ok(())
     }
 

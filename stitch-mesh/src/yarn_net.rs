@@ -19,6 +19,7 @@
 
 use crate::dye::Dye;
 use crate::ids::{FaceId, HalfEdgeId, NodeId, VisitId, YarnId};
+use crate::wrapping::Wrapping;
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::Range;
@@ -103,6 +104,8 @@ pub struct StitchContact {
     /// Sense of the double helix: +1 for the left contact of a knit, −1 for its right one; a purl has both the other way.
     /// It does not depend on the direction in which a yarn runs.
     pub handedness: f64,
+    /// How strongly the yarns are wrapped, and at what angle: that of the stitch.
+    pub wrapping: Wrapping,
     /// The visits of the yarn that forms the new loop, at the first and second end.
     pub new: [VisitId; 2],
     /// The same of every old loop, front to back. At least one.

@@ -159,6 +159,11 @@ fn command(stitches: &StitchMesh, (kind, a, b, c): Dice) -> Option<Command> {
             })?;
             Command::SetLive { edges: vec![edge], live: !b.is_multiple_of(3) }
         }
+        15 if b.is_multiple_of(2) => Command::SetWrap {
+            faces: vec![face.0],
+            modulus: (!b.is_multiple_of(3)).then_some(f64::from(b % 4)),
+            angle_deg: (!c.is_multiple_of(3)).then_some(f64::from(c % 181)),
+        },
         15 => Command::Dye { faces: vec![face.0], color },
         16 => Command::Paste { at: b % mesh.face_count() as u32, patch: some_patch(stitches, face, c)? },
         17 => match b % 3 {
@@ -186,7 +191,8 @@ fn check_mesh(stitches: &StitchMesh) {
     let again = PolygonMesh::new(mesh.positions().to_vec(), &mesh.face_lists()).unwrap();
     let again = StitchMesh::new(again, stitches.stitches().to_vec()).unwrap();
     let marks = stitches.marks().clone();
-    let again = again.with(stitches.dyes().to_vec(), stitches.places().to_vec(), marks).unwrap();
+    let (dyes, wrappings) = (stitches.dyes().to_vec(), stitches.wrappings().to_vec());
+    let again = again.with(dyes, wrappings, stitches.places().to_vec(), marks).unwrap();
     assert!(again == *stitches);
     for h in (0..mesh.half_edge_count()).map(HalfEdgeId::new) {
         if let Some(twin) = mesh.twin(h) {

@@ -166,6 +166,17 @@ pub enum Command {
         /// The colour, `#rrggbb`.
         color: Dye,
     },
+    /// Changes how strongly and at what angle the yarns of some stitches are wrapped around each other.
+    SetWrap {
+        /// The faces.
+        faces: Vec<u32>,
+        /// Factor on the modulus of wrapping that their material has; 1 if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        modulus: Option<f64>,
+        /// Angle at which wrapped yarns are at rest [°]; that of their material if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        angle_deg: Option<f64>,
+    },
     /// Puts a copied patch on the fabric.
     Paste {
         /// The face for its lowest stitch on the left.
@@ -350,6 +361,9 @@ impl Command {
             Self::Unsew { edges } => stitches::unsew(project, edges)?,
             Self::Dye { faces, color } => stitches::dye(project, faces, *color)?,
             Self::DyeRows { rows, color } => stitches::dye_rows(project, *rows, *color)?,
+            Self::SetWrap { faces, modulus, angle_deg } => {
+                stitches::wrap(project, faces, *modulus, *angle_deg)?;
+            }
             Self::Paste { at, patch } => stitches::paste(project, *at, patch)?,
             Self::Import { text, cast_on, repeats } => structure::import(project, text, *cast_on, *repeats)?,
             Self::Tile { text, rows, faces, layout } => {

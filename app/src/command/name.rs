@@ -58,6 +58,13 @@ impl Command {
             Self::DyeRows { rows: [first, last], color } => {
                 format!("Dye {} {color}", many(last.abs_diff(*first) + 1, "row"))
             }
+            Self::SetWrap { faces, modulus, angle_deg } => {
+                let modulus = modulus.map(|m| format!("× {m}"));
+                let how: Vec<String> =
+                    modulus.into_iter().chain(angle_deg.map(|a| format!("at {a}°"))).collect();
+                let how = if how.is_empty() { "as the material has it".into() } else { how.join(" ") };
+                format!("Wrap {} {how}", many(faces.len(), "stitch"))
+            }
             Self::Paste { patch, .. } => {
                 let count = patch.rows.iter().map(|r| r.stitches.iter().flatten().count()).sum();
                 format!("Paste {}", many(count, "stitch"))

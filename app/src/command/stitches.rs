@@ -13,6 +13,7 @@ use stitch_mesh::patch::Patch;
 use stitch_mesh::seam::Seam;
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
+use stitch_mesh::wrapping::Wrapping;
 
 /// Changes stitches and lays the yarn again.
 pub(super) fn restitch(
@@ -149,5 +150,17 @@ pub(super) fn dye_rows(project: &mut Project, rows: [usize; 2], color: Dye) -> R
         let all = stitches.rows();
         let mut faces = some_rows(&all, rows)?.iter().flat_map(|r| &r.faces);
         faces.try_for_each(|f| Ok(stitches.set_dye(*f, color)?))
+    })
+}
+
+pub(super) fn wrap(
+    project: &mut Project,
+    list: &[u32],
+    modulus: Option<f64>,
+    angle_deg: Option<f64>,
+) -> Result<()> {
+    let wrapping = Wrapping { modulus: modulus.unwrap_or(1.0), angle: angle_deg.map(f64::to_radians) };
+    restitch(project, |stitches| {
+        faces(stitches, list)?.into_iter().try_for_each(|f| Ok(stitches.set_wrapping(f, wrapping)?))
     })
 }

@@ -127,6 +127,10 @@ records! {
         node_0: u32, node_1: u32, node_2: u32, node_3: u32,
         dye: u32,
         handedness: f32,
+        /// Sine and cosine of the rest angle of the stitch's own; both zero where it has that of its material.
+        own_sin: f32,
+        own_cos: f32,
+        /// m L [m].
         rest: f32,
     }
     /// See `ShearTerm`.

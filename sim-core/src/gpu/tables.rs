@@ -19,6 +19,7 @@ use crate::step::clearances;
 use crate::take_in::TakeIn;
 use glam::DVec3;
 use stitch_mesh::ids::VisitId;
+use stitch_mesh::wrapping::Wrapping;
 
 /// A run of groups with all the elements around their nodes.
 #[derive(Default)]
@@ -243,8 +244,19 @@ impl Tables {
         }
         for term in &model.wraps {
             let [node_0, node_1, node_2, node_3] = self.nodes_of(&term.stencil);
-            let (handedness, rest) = (term.handedness as f32, term.rest as f32);
-            let record = Wrap { node_0, node_1, node_2, node_3, dye: term.dye, handedness, rest };
+            let Wrapping { modulus, angle } = term.wrapping;
+            let (own_sin, own_cos) = angle.map_or((0.0, 0.0), f64::sin_cos);
+            let record = Wrap {
+                node_0,
+                node_1,
+                node_2,
+                node_3,
+                dye: term.dye,
+                handedness: term.handedness as f32,
+                own_sin: own_sin as f32,
+                own_cos: own_cos as f32,
+                rest: (modulus * term.rest) as f32,
+            };
             self.enlist(model, columns, &mut lists, &term.stencil, OF_WRAP, [FROZEN; 4], |c| {
                 c.wraps.push(record);
                 c.wraps.len()

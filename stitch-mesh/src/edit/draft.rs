@@ -9,6 +9,7 @@ use crate::mesh::PolygonMesh;
 use crate::seam::sorted;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{Place, StitchMesh};
+use crate::wrapping::Wrapping;
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -21,6 +22,7 @@ pub struct Draft {
     pub faces: Vec<Outline>,
     pub stitches: Vec<Stitch>,
     pub dyes: Vec<Dye>,
+    pub wrappings: Vec<Wrapping>,
     pub places: Vec<Option<Place>>,
     pub marks: Marks,
     /// Faces whose stitches have gained or lost loops, by their numbers now.
@@ -36,6 +38,7 @@ impl Draft {
             faces: mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0).collect()).collect(),
             stitches: stitches.stitches().to_vec(),
             dyes: stitches.dyes().to_vec(),
+            wrappings: stitches.wrappings().to_vec(),
             places: stitches.places().to_vec(),
             marks: stitches.marks().clone(),
             changed: Vec::new(),
@@ -85,6 +88,7 @@ impl Draft {
         self.faces.remove(i);
         self.stitches.remove(i);
         self.dyes.remove(i);
+        self.wrappings.remove(i);
         self.places.remove(i);
         self.changed.iter_mut().for_each(|f| *f = now(*f));
         self.survivors.faces.iter_mut().for_each(|f| *f = f.map(now));
@@ -92,7 +96,8 @@ impl Draft {
 
     /// Puts everything together again.
     pub fn finish(self) -> Result<Edited, EditError> {
-        let Self { positions, faces, mut stitches, dyes, places, marks, changed, survivors } = self;
+        let Self { positions, faces, mut stitches, dyes, wrappings, places, marks, changed, survivors } =
+            self;
         let mesh = PolygonMesh::new(positions, &faces)?;
         for face in changed {
             let stitch = &mut stitches[face.index()];
@@ -103,7 +108,7 @@ impl Draft {
             let borne = below.into_iter().any(|h| mesh.twin(h).is_some());
             mend(stitch, borne);
         }
-        let stitches = StitchMesh::new(mesh, stitches)?.with(dyes, places, marks)?;
+        let stitches = StitchMesh::new(mesh, stitches)?.with(dyes, wrappings, places, marks)?;
         Ok((stitches, survivors))
     }
 }

@@ -32,8 +32,8 @@ struct NewFace {
 }
 
 impl StitchMesh {
-    /// Knits blocks anew. They must not overlap. New stitches have the colour of the old one in the same place; marks outside of
-    /// the blocks stay, cables inside go.
+    /// Knits blocks anew. They must not overlap. New stitches have colour and wrapping of the old one in the same place; marks
+    /// outside of the blocks stay, cables inside go.
     ///
     /// # Errors
     /// [`EditError`]: rows that do not fit a block, or a cable that cannot cross.
@@ -61,7 +61,8 @@ impl StitchMesh {
             }
         }
         let mut faces = Vec::new();
-        let (mut stitches, mut dyes, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut stitches, mut places) = (Vec::new(), Vec::new());
+        let (mut dyes, mut wrappings) = (Vec::new(), Vec::new());
         let mut survivors = Survivors { vertices: Vec::new(), faces: Vec::with_capacity(replaced.len()) };
         for (face, new) in self.mesh().faces().zip(replaced) {
             let new = new.unwrap_or_else(|| {
@@ -73,6 +74,7 @@ impl StitchMesh {
                 // Only one stitch can be in a place of the input.
                 places.push(self.places()[face.index()].filter(|_| i == 0));
                 dyes.push(self.dyes()[from.index()]);
+                wrappings.push(self.wrappings()[from.index()]);
                 faces.push(vertices);
                 stitches.push(stitch);
             }
@@ -93,7 +95,7 @@ impl StitchMesh {
         marks.live = marks.live.iter().map(|e| crate::seam::sorted(e.map(vertex))).collect();
         let kept = positions.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p);
         let mesh = PolygonMesh::new(kept.collect(), &faces)?;
-        Ok((Self::new(mesh, stitches)?.with(dyes, places, marks)?, survivors))
+        Ok((Self::new(mesh, stitches)?.with(dyes, wrappings, places, marks)?, survivors))
     }
 
     /// Vertices below a row of a block, left to right; above the highest row for the one after it.
@@ -202,6 +204,7 @@ mod tests {
     use crate::lay::lay;
     use crate::pieces::{rectangle, tube};
     use crate::unravel::loose_loops;
+    use crate::wrapping::Wrapping;
 
     fn row(text: &str) -> Vec<Item> {
         text.split_whitespace().map(|s| Item::Stitch(s.parse().unwrap())).collect()
@@ -235,6 +238,17 @@ mod tests {
         assert_eq!(counts, [8, 7, 7, 7, 8, 8]);
         assert_eq!(survivors.faces.iter().flatten().count(), 45);
         assert!(survivors.vertices.iter().all(Option::is_some), "no row has changed its number of loops");
+    }
+
+    #[test]
+    fn new_stitches_take_after_the_old_ones_in_their_place() {
+        let mut fabric = rectangle(6, 4, StitchSize::of_width(3e-3)).unwrap();
+        let slack = Wrapping { modulus: 0.5, angle: None };
+        [1, 2, 20].into_iter().for_each(|f| fabric.set_wrapping(FaceId(f), slack).unwrap());
+        let rows = vec![row("d12k k k k"), row("kp k k k")];
+        let (edited, survivors) = fabric.reknit(&[block(6, [1, 0], rows, 5)]).unwrap();
+        let wrapped_so = edited.mesh().faces().filter(|f| edited.wrappings()[f.index()] == slack);
+        assert_eq!(wrapped_so.collect::<Vec<_>>(), [FaceId(1), survivors.faces[20].unwrap()]);
     }
 
     #[test]

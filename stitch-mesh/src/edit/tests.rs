@@ -4,6 +4,7 @@ use crate::dye::Dye;
 use crate::edge_counts::StitchSize;
 use crate::pieces::{rectangle, tube};
 use crate::stitch::Stitch;
+use crate::wrapping::Wrapping;
 
 /// Stitches 0–4 below 5–9 below 10–14; vertices 0–5, 6–11, 12–17, 18–23.
 fn piece() -> StitchMesh {
@@ -72,17 +73,21 @@ fn a_removed_wale_edge_works_two_stitches_together() {
     let mut before = piece();
     let red: Dye = "#ff0000".parse().unwrap();
     before.set_dye(FaceId(14), red).unwrap();
+    let slack = Wrapping { modulus: 0.0, angle: None };
+    [6, 14].into_iter().for_each(|f| before.set_wrapping(FaceId(f), slack).unwrap());
     let (merged, survivors) = before.remove_wale(v(14, 8)).unwrap();
     assert_eq!(symbols(&merged)[1], "k d12kk k k");
     assert_eq!(merged.mesh().face_count(), 14);
     assert_eq!(survivors.faces[7], Some(FaceId(6)));
     assert_eq!(survivors.faces[14], Some(FaceId(13)));
     assert_eq!(merged.dyes()[13], red);
+    assert_eq!([6, 7, 13].map(|f| merged.wrappings()[f] == slack), [true, false, true]);
     assert_eq!(survivors.faces_before()[6..9], [6, 8, 9].map(|f| Some(FaceId(f))));
     // Now one of its two loops above can go: a k2tog, and the one above it is worked into one loop less.
     let (less, _) = merged.add_wale(FaceId(6), v(8, 14)).unwrap();
     assert_eq!(symbols(&less)[1], "k k k k k");
     assert_eq!(less.mesh().face_count(), 15);
+    assert_eq!([6, 13, 14].map(|f| less.wrappings()[f]), [slack; 3]);
 }
 
 #[test]

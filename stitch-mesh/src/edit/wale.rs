@@ -33,6 +33,7 @@ impl StitchMesh {
         draft.stitches.push(right);
         draft.stitch(FaceId::new(mesh.face_count()));
         draft.dyes.push(self.dyes()[face.index()]);
+        draft.wrappings.push(self.wrappings()[face.index()]);
         draft.places.push(self.places()[face.index()]);
         draft.finish()
     }
@@ -55,6 +56,7 @@ impl StitchMesh {
         draft.faces[stays.index()] = outline(&below, &above);
         *draft.stitch(stays) = join(self.stitch(left), self.stitch(right));
         draft.dyes[stays.index()] = self.dyes()[left.index()];
+        draft.wrappings[stays.index()] = self.wrappings()[left.index()];
         draft.places[stays.index()] = self.places()[left.index()];
         draft.drop_face(goes, stays);
         draft.finish()

@@ -1,4 +1,5 @@
-//! Bind-off: one more row of knits in cells beyond the border, each through its fabric loop and the bind-off loop before it.
+//! Bind-off: one more row of knits in cells beyond the border, each through its fabric loop and the bind-off loop before it. It
+//! has colour and wrapping of the stitch below it.
 
 use super::draft::{Cell, Draft, LOOSE};
 use super::template::{LocalPorts, knit_through};
@@ -7,6 +8,7 @@ use crate::dye::Dye;
 use crate::ids::HalfEdgeId;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
+use crate::wrapping::Wrapping;
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
@@ -93,6 +95,7 @@ struct Place {
     corners: [DVec3; 4],
     normal: DVec3,
     dye: Dye,
+    wrapping: Wrapping,
 }
 
 impl Place {
@@ -103,7 +106,8 @@ impl Place {
         let [from, to] = [left, right].map(|v| mesh.position(v));
         let up = stitches.up(face) * HEIGHT;
         let normal = (vertex_normals[left.index()] + vertex_normals[right.index()]).normalize_or(DVec3::Z);
-        Self { corners: [from, to, to + up, from + up], normal, dye: stitches.dyes()[face.index()] }
+        let (dye, wrapping) = (stitches.dyes()[face.index()], stitches.wrappings()[face.index()]);
+        Self { corners: [from, to, to + up, from + up], normal, dye, wrapping }
     }
 
     /// Puts a stitch with this many bottoms here.
@@ -119,7 +123,7 @@ impl Place {
             corners[bottoms + 1] = 0.5 * (c + d);
         }
         let normals = vec![self.normal; corners.len()];
-        let cell = Cell { corners: &corners, normals: &normals, dye: self.dye };
+        let cell = Cell { corners: &corners, normals: &normals, dye: self.dye, wrapping: self.wrapping };
         draft.add_beyond(stitch, &cell, ports);
     }
 }

@@ -7,6 +7,7 @@ use crate::dye::Dye;
 use crate::ids::{NodeId, VisitId};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::StitchMesh;
+use crate::wrapping::Wrapping;
 use crate::yarn_net::{Node, NodeKind, StitchContact};
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -112,7 +113,7 @@ impl<'a> Draft<'a> {
             let visits = visits + usize::from(p.visits.start)..visits + usize::from(p.visits.end);
             self.push_piece(PieceBeyond { from, to, visits, dye: cell.dye, own: p.own });
         }
-        self.contacts.extend(template.contacts.iter().map(|c| c.numbered(id)));
+        self.contacts.extend(template.contacts.iter().map(|c| c.numbered(cell.wrapping, id)));
     }
 
     fn push_piece(&mut self, piece: PieceBeyond) {
@@ -249,6 +250,7 @@ pub(super) struct Cell<'a> {
     /// Unit normals at the corners.
     pub normals: &'a [DVec3],
     pub dye: Dye,
+    pub wrapping: Wrapping,
 }
 
 impl Cell<'_> {

@@ -165,7 +165,8 @@ impl<'a> FaceYarn<'a> {
         of_contact.into_par_iter().enumerate().map(move |(c, face)| {
             let before = self.before[face.index()];
             let contact = &self.template(face).contacts[c - before.contacts as usize];
-            contact.numbered(|v| number(before.visits + u32::from(v)))
+            let wrapping = self.stitches.wrappings()[face.index()];
+            contact.numbered(wrapping, |v| number(before.visits + u32::from(v)))
         })
     }
 

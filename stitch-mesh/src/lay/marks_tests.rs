@@ -12,6 +12,7 @@ use crate::seam::Seam;
 use crate::stitch_mesh::StitchMesh;
 use crate::tessellate::tessellate;
 use crate::unravel::loose_loops;
+use crate::wrapping::Wrapping;
 use crate::yarn_net::{NodeKind, YarnNet};
 
 /// Every loop is held.
@@ -246,4 +247,24 @@ fn yarn_has_the_colour_it_was_worked_with() {
         nodes.flat_map(|n| &n.visits).filter(|v| net.visits[v.index()].dye == red).count()
     };
     assert_eq!((reds(5), reds(9), reds(1), reds(4), reds(6)), (4, 4, 0, 0, 0));
+}
+
+#[test]
+fn contacts_are_wrapped_as_their_stitch() {
+    let mut stitches = rectangle(4, 4, StitchSize::of_width(3e-3)).unwrap();
+    let (tight, slack) =
+        (Wrapping { modulus: 2.0, angle: Some(1.0) }, Wrapping { modulus: 0.5, angle: None });
+    stitches.set_wrapping(FaceId(5), tight).unwrap();
+    stitches.set_wrapping(FaceId(13), slack).unwrap();
+    let net = lay(&stitches);
+    let faces = |wrapping: Wrapping| -> Vec<_> {
+        let contacts = net.contacts.iter().filter(|c| c.wrapping == wrapping);
+        contacts.map(|c| net.nodes[net.visits[c.new[0].index()].node.index()].face).collect()
+    };
+    assert_eq!(faces(tight), [Some(FaceId(5)); 2]);
+    // Above a stitch of the last row its bind-off is wrapped as it is.
+    assert_eq!(faces(slack), [Some(FaceId(13)), Some(FaceId(13)), None, None]);
+    let bad = stitches.set_wrapping(FaceId(5), Wrapping { modulus: -1.0, angle: None });
+    assert!(bad.is_err() && stitches.set_wrapping(FaceId(16), tight).is_err());
+    assert_eq!(stitches.wrappings()[5], tight);
 }

@@ -17,7 +17,11 @@ pub fn relay(net: &YarnNet, before: &StitchMesh, after: &StitchMesh) -> YarnNet 
 }
 
 fn restacked(net: &YarnNet, before: &StitchMesh, after: &StitchMesh) -> Option<YarnNet> {
-    if !after.has_mesh_of(before) || before.marks() != after.marks() || before.dyes() != after.dyes() {
+    if !after.has_mesh_of(before)
+        || before.marks() != after.marks()
+        || before.dyes() != after.dyes()
+        || before.wrappings() != after.wrappings()
+    {
         return None;
     }
     let changed: Vec<FaceId> =
@@ -83,6 +87,7 @@ mod tests {
     use crate::edge_counts::StitchSize;
     use crate::pieces::from_rows;
     use crate::stitch::Stitch;
+    use crate::wrapping::Wrapping;
 
     fn same(a: &YarnNet, b: &YarnNet) -> bool {
         // Debug prints every field to the last digit.
@@ -109,5 +114,8 @@ mod tests {
         let mut dyed = before.clone();
         dyed.set_dye(FaceId(3), crate::dye::Dye([1, 2, 3])).unwrap();
         assert!(restacked(&net, &before, &dyed).is_none());
+        let mut slack = before.clone();
+        slack.set_wrapping(FaceId(3), Wrapping { modulus: 0.5, angle: None }).unwrap();
+        assert!(same(&relay(&net, &before, &slack), &lay(&slack)) && !same(&net, &lay(&slack)));
     }
 }

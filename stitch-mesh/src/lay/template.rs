@@ -12,6 +12,7 @@
 use crate::ids::VisitId;
 use crate::mean_value::{mean_value_weights, reference_polygon};
 use crate::stitch::{Make, Op, Stitch};
+use crate::wrapping::Wrapping;
 use crate::yarn_net::{NodeKind, StitchContact};
 use glam::DVec2;
 use smallvec::{SmallVec, smallvec};
@@ -62,10 +63,11 @@ pub(super) struct TemplateContact {
 }
 
 impl TemplateContact {
-    /// The contact with its visits numbered.
-    pub fn numbered(&self, number: impl Fn(LocalVisit) -> VisitId) -> StitchContact {
+    /// The contact of a stitch wrapped so, its visits numbered.
+    pub fn numbered(&self, wrapping: Wrapping, number: impl Fn(LocalVisit) -> VisitId) -> StitchContact {
         StitchContact {
             handedness: self.handedness,
+            wrapping,
             new: self.new.map(&number),
             old: self.old.iter().map(|o| o.map(&number)).collect(),
         }

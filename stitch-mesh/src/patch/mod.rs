@@ -15,11 +15,12 @@ use crate::ids::{FaceId, HalfEdgeId, VertexId};
 use crate::label::Row;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{StitchMesh, StitchMeshError};
+use crate::wrapping::Wrapping;
 use line::Line;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 
-/// A stitch and the colour of its yarn.
+/// A stitch, the colour of its yarn, and how that is wrapped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PatchStitch {
@@ -28,6 +29,13 @@ pub struct PatchStitch {
     /// In which colour.
     #[serde(default)]
     pub color: Dye,
+    /// How wrapped.
+    #[serde(default, skip_serializing_if = "is_of_material")]
+    pub wrapping: Wrapping,
+}
+
+fn is_of_material(wrapping: &Wrapping) -> bool {
+    *wrapping == Wrapping::OF_MATERIAL
 }
 
 /// One row of a patch.
@@ -119,7 +127,7 @@ pub enum PatchError {
 }
 
 impl Patch {
-    /// Copies stitches, their colours, and the cables that lie between them.
+    /// Copies stitches, their colours and wrappings, and the cables that lie between them.
     ///
     /// # Errors
     /// [`PatchError`] where they do not lie in rows on each other.
@@ -143,8 +151,9 @@ impl Patch {
             let begins = row.first().map_or(0, |(c, _)| *c);
             let mut cells = vec![None; row.last().map_or(0, |(c, _)| (c - begins + 1) as usize)];
             for (c, f) in row {
-                let (stitch, color) = (stitches.stitch(f).clone(), stitches.dyes()[f.index()]);
-                cells[(c - begins) as usize] = Some(PatchStitch { stitch, color });
+                let stitch = stitches.stitch(f).clone();
+                let (color, wrapping) = (stitches.dyes()[f.index()], stitches.wrappings()[f.index()]);
+                cells[(c - begins) as usize] = Some(PatchStitch { stitch, color, wrapping });
             }
             patch.rows.push(PatchRow { begins, stitches: cells });
             at = stitches.above(face).next().filter(|f| *f != anchor && patch.rows.len() < rows.len());
@@ -165,7 +174,7 @@ impl Patch {
         let last = self.rows.first().map_or(0, ends);
         let row = |r: &PatchRow| {
             let stitches = r.stitches.iter().rev().map(|s| {
-                let mirror = |s: &PatchStitch| PatchStitch { stitch: s.stitch.mirrored(), color: s.color };
+                let mirror = |s: &PatchStitch| PatchStitch { stitch: s.stitch.mirrored(), ..s.clone() };
                 s.as_ref().map(mirror)
             });
             PatchRow { begins: last.wrapping_sub(ends(r)), stitches: stitches.collect() }
@@ -216,11 +225,12 @@ impl Patch {
                 return Err(PatchError::Laps { face: anchor, has, needs });
             }
             for (i, stitch) in (0..).zip(&row.stitches) {
-                let Some(PatchStitch { stitch, color }) = stitch else { continue };
+                let Some(PatchStitch { stitch, color, wrapping }) = stitch else { continue };
                 let column = row.begins.wrapping_add(i);
                 let face = line.at(column)?;
                 after.set_stitch(face, stitch.clone())?;
                 after.set_dye(face, *color)?;
+                after.set_wrapping(face, *wrapping)?;
                 faces.insert((r, column), face);
             }
         }

@@ -2,6 +2,8 @@ use super::*;
 use crate::edge_counts::StitchSize;
 use crate::pieces::{rectangle, tube};
 
+const SLACK: Wrapping = Wrapping { modulus: 0.5, angle: Some(1.0) };
+
 fn symbols(stitches: &StitchMesh) -> Vec<String> {
     let symbol = |f: &FaceId| stitches.stitch(*f).to_string();
     stitches.rows().iter().map(|r| r.faces.iter().map(symbol).collect::<String>()).collect()
@@ -13,6 +15,7 @@ fn piece() -> StitchMesh {
     piece.set_stitch(FaceId(0), "p1".parse().unwrap()).unwrap();
     piece.set_stitch(FaceId(6), Stitch::purl()).unwrap();
     piece.set_dye(FaceId(7), "#ff0000".parse().unwrap()).unwrap();
+    piece.set_wrapping(FaceId(7), SLACK).unwrap();
     piece.set_cable(Cable::cross([7, 8, 9, 10].map(VertexId).to_vec(), 1, 2, true)).unwrap();
     piece
 }
@@ -28,6 +31,7 @@ fn a_patch_is_copied_and_pasted() {
     patch.paste(&mut target, FaceId(14)).unwrap();
     assert_eq!(symbols(&target), ["kkkkkk", "kkkkkk", "kkp1kkk", "kkpkkk"]);
     assert_eq!(target.dyes()[21].to_string(), "#ff0000");
+    assert_eq!([20, 21].map(|f| target.wrappings()[f]), [Wrapping::OF_MATERIAL, SLACK]);
     assert_eq!(target.cables(), [Cable::cross([23, 24, 25, 26].map(VertexId).to_vec(), 1, 2, true)]);
     patch.paste(&mut target, FaceId(14)).unwrap();
     assert_eq!(target.cables().len(), 1, "pasting over it replaces the cable");

@@ -51,9 +51,11 @@ fn wrap(@builtin(global_invocation_id) id: vec3<u32>) {
     let n_b = -cross(e, b.out);
     let cos_psi = dot(n_a, n_b);
     let sin_psi = dot(e, cross(n_a, n_b));
-    let sin_rest = term.handedness * yarn.wrap_sin;
-    let cosine = cos_psi * yarn.wrap_cos + sin_psi * sin_rest;
-    let sine = sin_psi * yarn.wrap_cos - cos_psi * sin_rest;
+    let has_own = term.own_sin != 0.0 || term.own_cos != 0.0;
+    let sin_rest = term.handedness * select(yarn.wrap_sin, term.own_sin, has_own);
+    let cos_rest = select(yarn.wrap_cos, term.own_cos, has_own);
+    let cosine = cos_psi * cos_rest + sin_psi * sin_rest;
+    let sine = sin_psi * cos_rest - cos_psi * sin_rest;
     let k = yarn.wrap * term.rest;
 
     let force_a = k * (-sine * a.s_by_h * b.s * n_a - cosine * a.slope * b.s * a.out);

@@ -17,6 +17,7 @@ use stitch_mesh::pieces::{from_rows, tube};
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::swatches::of_cable;
 use stitch_mesh::weave::Woven;
+use stitch_mesh::wrapping::Wrapping;
 use stitch_mesh::yarn_net::YarnNet;
 use wgpu::naga;
 
@@ -42,6 +43,10 @@ fn ten_fabrics() -> Vec<(&'static str, YarnNet)> {
     let lace =
         |t: usize| if t.is_multiple_of(2) { row(&["k"; 6]) } else { row(&["d21k", "ky", "d21k", "ky"]) };
     let narrow = [row(&["k"; 9]), row(&["d123k"; 3]), row(&["k"; 3]), row(&["kpk"; 3])];
+    let mut seed = flat(&|s, t| ["k", "p"][(s + t) % 2]);
+    for contact in seed.contacts.iter_mut().step_by(3) {
+        contact.wrapping = Wrapping { modulus: 2.0, angle: Some(0.6) };
+    }
     let draft = "twill".parse().unwrap();
     let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(Dye);
     let cloth =
@@ -50,7 +55,7 @@ fn ten_fabrics() -> Vec<(&'static str, YarnNet)> {
         ("stockinette", flat(&|_, _| "k")),
         ("garter", flat(&|_, t| ["k", "p"][t % 2])),
         ("rib", flat(&|s, _| ["k", "k", "p"][s % 3])),
-        ("seed", flat(&|s, t| ["k", "p"][(s + t) % 2])),
+        ("seed of two wrappings", seed),
         ("lace", lay(&from_rows(&(0..5).map(lace).collect::<Vec<_>>(), size).unwrap())),
         ("stacks", lay(&from_rows(&narrow, size).unwrap())),
         ("cable", lay(&of_cable(&[(0, Cable::cross(vec![], 2, 2, true))], 5, size).unwrap())),
