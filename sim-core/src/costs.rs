@@ -24,7 +24,7 @@ pub struct Work {
     pub factorisation_operations: u64,
 }
 
-/// The names of the stages of [`Costs::stages`], in the order of [`Stage`].
+/// The names of the stages of [`Costs::stages`], one after the other.
 pub const STAGES: [&str; 6] = ["assembly", "friction", "contacts", "factorisation", "iterations", "rest"];
 
 /// A stage of a step.

@@ -241,9 +241,23 @@ struct Output {
 impl Output {
     /// Prints the result of a verb.
     fn print(self, json: &serde_json::Value, text: &dyn std::fmt::Display) {
-        let mut out = std::io::stdout();
+        self.tell(text);
+        self.end(json);
+    }
+
+    /// Prints a part of the result for people.
+    fn tell(self, text: &dyn std::fmt::Display) {
         // A reader that has gone away (`| head`) does not want the rest; the work is done all the same.
-        let _ = if self.json { writeln!(out, "{json}") } else { writeln!(out, "{text}") };
+        if !self.json {
+            let _ = writeln!(std::io::stdout(), "{text}");
+        }
+    }
+
+    /// Prints the whole result for programs.
+    fn end(self, json: &serde_json::Value) {
+        if self.json {
+            let _ = writeln!(std::io::stdout(), "{json}");
+        }
     }
 }
 

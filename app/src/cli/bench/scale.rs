@@ -30,7 +30,7 @@ const STEPS: usize = 4;
 /// Lets the garments of at most so many loops fall on their mannequin, and measures.
 pub fn run(most_loops: usize, print: Output) -> Result<()> {
     let machine = Machine::measure();
-    let (mut runs, mut text) = (Vec::new(), String::new());
+    let mut runs = Vec::new();
     for (name, wanted) in RUNS.into_iter().filter(|(_, loops)| *loops <= most_loops) {
         let project = find(name).with_context(|| format!("there is no {name}"))?.of_loops(wanted)?;
         let fabric = project.fabric()?;
@@ -53,9 +53,9 @@ pub fn run(most_loops: usize, print: Output) -> Result<()> {
         let s_per_frame = 1e-3 * ms * costs.attempts as f64 * FRAME / simulated;
         let iterations = costs.iterations as f64 / costs.attempts as f64;
         let peak = peak_mib();
-        text += &format!(
+        print.tell(&format!(
             "{name}, {loops} loops, {} solver: {ms:.0} ms a step ({}), {:.3} ms a loop in 1 000 steps, {iterations:.1} \
-             iterations, {s_per_frame:.2} s a frame of 1/30 s, stretch {:.4}, least yarn distance {:.2} diameters, {}\n  {}\n",
+             iterations, {s_per_frame:.2} s a frame of 1/30 s, stretch {:.4}, least yarn distance {:.2} diameters, {}\n  {}",
             solver(&simulator),
             stages_text(&stages),
             1e3 * ms / loops as f64,
@@ -63,7 +63,7 @@ pub fn run(most_loops: usize, print: Output) -> Result<()> {
             facts.min_yarn_distance_over_diameter,
             peak.map_or_else(String::new, |mib| format!("{mib:.0} MiB so far")),
             machine.compare(&costs, simulator.work()),
-        );
+        ));
         runs.push(json!({
             "garment": name,
             "loops": loops,
@@ -81,6 +81,6 @@ pub fn run(most_loops: usize, print: Output) -> Result<()> {
             "finite": simulator.state().is_finite(),
         }));
     }
-    print.print(&json!({ "runs": runs, "threads": rayon::current_num_threads() }), &text.trim_end());
+    print.end(&json!({ "runs": runs, "threads": rayon::current_num_threads() }));
     Ok(())
 }

@@ -28,7 +28,7 @@ pub fn run(print: Output) -> Result<()> {
     let held = net.nodes.iter().enumerate().filter(|(_, n)| n.face.is_some_and(|f| f.index() >= last));
     let pins: Vec<Pin> =
         held.map(|(i, n)| Pin { node: i as u32, target: n.position, stiffness: STIFFNESS }).collect();
-    let (mut runs, mut text) = (Vec::new(), String::new());
+    let mut runs = Vec::new();
     for (method, time_step) in
         [Method::Direct, Method::Iterative].into_iter().flat_map(|m| [(m, 5e-3), (m, 10e-3)])
     {
@@ -41,9 +41,9 @@ pub fn run(print: Output) -> Result<()> {
         let (costs, facts, stages) = (simulator.costs(), simulator.facts(), stages_ms(&simulator));
         let ms: f64 = stages.values().filter_map(Value::as_f64).sum();
         let iterations = costs.iterations as f64 / costs.attempts as f64;
-        text += &format!(
+        print.tell(&format!(
             "{} loops, {} solver, steps of {:.0} ms: {ms:.1} ms a step ({}), {iterations:.1} iterations, {} of {} steps \
-             taken again\n  {}\n",
+             taken again\n  {}",
             SIDE * SIDE,
             solver(&simulator),
             1e3 * time_step,
@@ -51,7 +51,7 @@ pub fn run(print: Output) -> Result<()> {
             facts.rejected_steps,
             costs.attempts,
             machine.compare(&costs, simulator.work()),
-        );
+        ));
         runs.push(json!({
             "loops": SIDE * SIDE,
             "solver": solver(&simulator),
@@ -65,6 +65,6 @@ pub fn run(print: Output) -> Result<()> {
             "finite": simulator.state().is_finite(),
         }));
     }
-    print.print(&json!({ "runs": runs, "threads": rayon::current_num_threads() }), &text.trim_end());
+    print.end(&json!({ "runs": runs, "threads": rayon::current_num_threads() }));
     Ok(())
 }
