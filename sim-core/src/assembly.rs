@@ -7,9 +7,8 @@
 //! Friction, bodies and pins touch single nodes and are added by the step itself.
 //!
 //! # Practice
-//! The matrix is stored by columns, and the columns of a run of nodes follow each other. So the nodes are shared out in strips,
-//! and the elements that lie whole inside of one are evaluated and added up strip beside strip; those across two come after. Strips
-//! depend on the net alone, so the sums have the same bits whatever the number of threads.
+//! Elements are evaluated and added up strip beside strip (`strips.rs`), which do not depend on the number of threads; so the sums
+//! have the same bits whatever that is.
 
 use crate::air;
 use crate::friction::FrictionSpring;
@@ -17,18 +16,13 @@ use crate::gravity::Gravity;
 use crate::local::{Element, point};
 use crate::mass::mass;
 use crate::material::Material;
-use crate::model::{BendTerm, FROZEN, Model, SegmentTerm, Stencil, WrapTerm};
+use crate::model::{BendTerm, FROZEN, Model, SegmentTerm, WrapTerm};
 use crate::solver::matrix::BlockMatrix;
+use crate::strips::{Places, Share, Strip, share_out};
 use crate::woven::ShearTerm;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::ops::Range;
-use stitch_mesh::ids::NodeId;
 use stitch_mesh::yarn_net::YarnState;
-
-/// Nodes in a strip at least, and strips at most.
-const STRIP: usize = 4096;
-const MOST_STRIPS: usize = 16;
 
 /// Where a step starts from.
 #[derive(Clone, Copy)]
@@ -56,105 +50,6 @@ struct Contribution<const K: usize, const N: usize> {
     pull: [DVec3; K],
 }
 
-/// Where the unknowns of a stencil are, counted from the beginning of its strip.
-#[derive(Clone, Copy, Debug)]
-struct Places<const K: usize> {
-    /// The stencil's place among all of its kind.
-    term: u32,
-    /// Of each visit in [`System::pull`].
-    slot: [u32; K],
-    /// First unknown of each visit's node.
-    start: [u32; K],
-    /// Place of the sliding coordinate within its node, or [`FROZEN`].
-    sliding: [u32; K],
-    /// First entry of the block (row a, column b) where node a ≥ node b.
-    block: [[u32; K]; K],
-    /// From an entry to that beside it in the next column, in the first column of each node. It is one less in each further one.
-    stride: [u32; K],
-}
-
-impl<const K: usize> Places<K> {
-    fn new(
-        model: &Model,
-        matrix: &BlockMatrix,
-        (term, stencil): (usize, &Stencil<K>),
-        strip: &Strip,
-    ) -> Self {
-        let node = stencil.nodes.map(|n| n.index());
-        let own = node.map(|n| model.start[n]);
-        let slot = std::array::from_fn(|k| {
-            let stack = &model.net.nodes[node[k]].visits;
-            let place = stack.iter().position(|v| *v == stencil.visits[k]).unwrap_or_default();
-            model.slot[node[k]] + place as u32 - strip.slots.start
-        });
-        let sliding = std::array::from_fn(|k| match model.sliding[stencil.visits[k].index()] {
-            FROZEN => FROZEN,
-            dof => dof - own[k],
-        });
-        let block = std::array::from_fn(|a| {
-            std::array::from_fn(|b| match matrix.block(node[a], node[b]) {
-                _ if node[a] < node[b] => 0,
-                block => matrix.place(own[b], block, 0, 0) as u32 - strip.entries.start,
-            })
-        });
-        let stride = own.map(|s| matrix.column[s as usize + 1] - matrix.column[s as usize] - 1);
-        Self { term: term as u32, slot, start: own.map(|s| s - strip.unknowns.start), sliding, block, stride }
-    }
-
-    /// From an entry of the first column of visit k's node to that beside it in a further one.
-    #[inline(always)]
-    fn column(&self, k: usize, unknown: usize) -> usize {
-        unknown * self.stride[k] as usize - unknown * unknown.saturating_sub(1) / 2
-    }
-}
-
-/// A run of nodes, and what of the system is theirs.
-#[derive(Clone, Debug)]
-struct Strip {
-    nodes: Range<u32>,
-    slots: Range<u32>,
-    unknowns: Range<u32>,
-    entries: Range<u32>,
-}
-
-impl Strip {
-    fn new(model: &Model, matrix: &BlockMatrix, nodes: Range<u32>) -> Self {
-        let between = |of: &dyn Fn(usize) -> u32| of(nodes.start as usize)..of(nodes.end as usize);
-        let unknowns = between(&|n| model.start[n]);
-        let entries = matrix.column[unknowns.start as usize]..matrix.column[unknowns.end as usize];
-        Self { slots: between(&|n| model.slot[n]), unknowns, entries, nodes }
-    }
-}
-
-/// Elements that touch one strip alone.
-struct Share {
-    segments: Vec<Places<2>>,
-    bends: Vec<Places<3>>,
-    wraps: Vec<Places<4>>,
-    shears: Vec<Places<4>>,
-}
-
-impl Share {
-    /// The elements of `model` that `has` takes by their nodes, their places counted from the beginning of `strip`.
-    fn new(model: &Model, matrix: &BlockMatrix, strip: &Strip, has: &dyn Fn(&[NodeId]) -> bool) -> Self {
-        fn places<'a, const K: usize>(
-            stencils: impl Iterator<Item = &'a Stencil<K>>,
-            (model, matrix, strip): (&Model, &BlockMatrix, &Strip),
-            has: &dyn Fn(&[NodeId]) -> bool,
-        ) -> Vec<Places<K>> {
-            let own = stencils.enumerate().filter(|(_, s)| has(&s.nodes));
-            own.map(|s| Places::new(model, matrix, s, strip)).collect()
-        }
-        let of = (model, matrix, strip);
-        Self {
-            segments: places(model.segments.iter().map(|t| &t.stencil), of, has),
-            bends: places(model.bends.iter().map(|t| &t.stencil), of, has),
-            wraps: places(model.wraps.iter().map(|t| &t.stencil), of, has),
-            shears: places(model.shears.iter().map(|t| &t.stencil), of, has),
-        }
-    }
-}
-
 /// The linear system of a step.
 pub(crate) struct System {
     pub matrix: BlockMatrix,
@@ -172,19 +67,10 @@ impl System {
     /// An empty system for `model`.
     pub fn new(model: &Model) -> Self {
         let matrix = BlockMatrix::new(model);
-        let count = model.net.nodes.len() as u32;
-        let width = count.div_ceil((count as usize / STRIP).clamp(1, MOST_STRIPS) as u32).max(1);
-        let strips = (0..count).step_by(width as usize).map(|first| {
-            let strip = Strip::new(model, &matrix, first..count.min(first + width));
-            let inside = |nodes: &[NodeId]| nodes.iter().all(|n| strip.nodes.contains(&n.0));
-            let share = Share::new(model, &matrix, &strip, &inside);
-            (strip, share)
-        });
-        let all = Strip::new(model, &matrix, 0..count);
-        let across = |nodes: &[NodeId]| nodes.iter().any(|n| n.0 / width != nodes[0].0 / width);
+        let (strips, across) = share_out(model, &matrix);
         Self {
-            strips: strips.collect(),
-            across: Share::new(model, &matrix, &all, &across),
+            strips,
+            across,
             rhs: vec![0.0; model.dof_count()],
             pull: vec![DVec3::ZERO; model.sliding.len()],
             matrix,

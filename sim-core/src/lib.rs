@@ -54,6 +54,7 @@ mod solver;
 mod spacing;
 mod step;
 mod stretch;
+mod strips;
 mod surgery;
 mod surroundings;
 mod take_in;
