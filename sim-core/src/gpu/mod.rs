@@ -10,7 +10,7 @@
 //!   b − A v₀ from the assembled matrix would lose the motion of the fabric as a whole (the stiffness of a segment is 4e5 times its mass).
 //! - **Gather, not scatter.** WGSL has no portable float atomics. Elements leave the factors of their rank-one matrices, and one
 //!   invocation a row sums what is around its node. Sums of scalar products go in two stages. So results have the same bits every time.
-//! - **Preconditioner.** The incomplete factorisation of `solver/incomplete.rs`, with the same groups in the same order, level by level
+//! - **Preconditioner.** The incomplete factorisation of `solver/factor.rs`, with the same groups in the same order, level by level
 //!   (`pattern.rs`), left-looking.
 //!
 //! # Why not something that needs fewer dispatches

@@ -1,7 +1,7 @@
 //! Where the entries of the incomplete factor are, and in which order workgroups may make them.
 //!
 //! # Theory
-//! The factorisation is that of `solver/incomplete.rs`: groups of two courses of a wale, eliminated row by row, rows handed on
+//! The factorisation is that of `solver/factor.rs`: groups of two courses of a wale, eliminated row by row, rows handed on
 //! once (IC(1)). A group may be eliminated as soon as all groups are that it takes something from; all those with the same
 //! *level*, the longest chain of such groups before it, go at once. A piece of w × h stitches has some w + 1.5 h levels.
 //!

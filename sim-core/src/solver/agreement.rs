@@ -196,10 +196,14 @@ fn same_bits_on_one_thread_and_on_two() {
     let go = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let [(_, stitches), ..] = fabrics();
-            let mut hanging = Hanging::new(&stitches);
-            hanging.stepper.solver = hanging.iterative();
-            hanging.step().state
+            // Large enough that assembly, products and factorisation are shared out.
+            let model = crate::testing::swatch_model(50, 50);
+            assert!(model.dof_count() > super::factor::ALONE && model.net.nodes.len() > 8192);
+            let state = model.net.laid_state();
+            let material = Material::for_loop_width(3e-3);
+            let mut stepper = Stepper::new(model, &material.into(), Some(Method::Iterative));
+            let anchors = Anchors::at(&stepper.stacks, &state.sliding);
+            stepper.step(&Stuck { state, anchors }, &Scene::default(), 0.0, 1e-3).unwrap().state
         })
     };
     assert_eq!(go(1), go(2));

@@ -26,7 +26,7 @@ use triangular::BlockStructure::{Rectangular, TriangularLower};
 const SHIFTS: [f32; 4] = [0.0, 1e-3, 4e-3, 1.6e-2];
 
 /// Unknowns under which a factor is made and used on one thread: waking a second takes longer than it helps.
-const ALONE: usize = 40_000;
+pub(crate) const ALONE: usize = 40_000;
 
 /// A matrix has no factorisation, whatever the shift.
 #[derive(Debug)]

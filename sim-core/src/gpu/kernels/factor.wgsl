@@ -1,4 +1,4 @@
-// Incomplete Cholesky factorisation, one workgroup a group: `solver/incomplete.rs`, left-looking. The front of a group is
+// Incomplete Cholesky factorisation, one workgroup a group: `solver/factor.rs`, left-looking. The front of a group is
 // (C⁻¹; Q) with D = C Cᵀ its diagonal block and Q = P C⁻ᵀ, P the rows below; it first takes Q Qᵀ of earlier groups away.
 @group(0) @binding(0) var<uniform> part: Part;
 @group(0) @binding(1) var<storage, read> nodes: array<Node>;
