@@ -42,6 +42,7 @@ mod model;
 mod motion;
 mod near_pairs;
 mod noise;
+mod overshoot;
 mod parallel;
 mod pin;
 mod preset;

@@ -7,7 +7,7 @@
 //! # Practice
 //! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
 //! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
-//! yarn, its ends move against each other by more than half its length. That happens while a net finds its first
+//! yarn, its ends move against each other by more than most of its length. That happens while a net finds its first
 //! shape, if ever.
 
 use crate::assembly::{Start, System};
@@ -19,6 +19,7 @@ use crate::local::Element;
 use crate::material::Material;
 use crate::materials::{Materials, Touch};
 use crate::model::{FROZEN, Model, SegmentTerm};
+use crate::overshoot::draw_back;
 use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
 use crate::solver::tail::Link;
@@ -28,6 +29,9 @@ use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
 use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{Node, YarnState};
+
+/// How far the ends of a segment may move against each other in a step, over its length.
+pub(crate) const LEAP: f64 = 0.8;
 
 /// Why a step was thrown away.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -41,7 +45,7 @@ pub enum Rejection {
     /// A segment would lose more than half of its yarn.
     #[error("segment {0} loses more than half of its yarn")]
     Shrinking(usize),
-    /// The ends of a segment would move against each other by more than half its length.
+    /// The ends of a segment would move against each other by more than [`LEAP`].
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
     /// More layers of the fabric meet than the GPU has room for.
@@ -137,9 +141,11 @@ impl Stepper {
             let kept = Rotation { omega: rotation.omega / (1.0 + h * self.mean_mass_damping()), ..rotation };
             self.keep_rotation(state, &mut velocity, kept);
         }
-        let next = advanced(state, velocity, rate, h);
+        let mut next = advanced(state, velocity, rate, h);
+        let forces = body_forces(scene, &touching, &next.velocity, h);
+        draw_back(&self.model, &self.masses, state, &mut next, h);
         self.judge(state, &next)?;
-        self.body_forces = body_forces(scene, &touching, &next.velocity, h);
+        self.body_forces = forces;
         watch.lap(&mut self.costs, Stage::Rest);
         Ok(Stuck { state: next, anchors })
     }
@@ -279,7 +285,7 @@ impl Stepper {
                 return Err(Rejection::Shrinking(i));
             }
             let length = span(state).length().max(yarn(state));
-            if span(next).distance(span(state)) > 0.5 * length {
+            if span(next).distance(span(state)) > LEAP * length {
                 return Err(Rejection::Leaping(i));
             }
         }

@@ -4,6 +4,9 @@
 //! tight. Cut to length at once they would jump, so the yarn is drawn out of them over [`TIME`]. Drawing a length out of
 //! a segment moves all later sliding coordinates of its yarn down by it, and makes a closed yarn so much shorter.
 //!
+//! Of the whole that a yarn is to give, each of those segments gives in proportion to the yarn that it has just then. The yarn slides
+//! meanwhile, so a length of its own for each would be drawn out of some that no longer have it: sewing yarn ran backwards there.
+//!
 //! How far that has come is part of the state ([`YarnState::taken_in`], 0 to 1), so a fabric that is opened again goes on.
 
 use crate::friction::{Anchors, Stack};
@@ -106,12 +109,45 @@ impl TakeIn {
         if self.total.is_empty() || part <= 0.0 {
             return;
         }
-        for (u, total) in state.sliding.iter_mut().zip(&self.total) {
-            *u -= part * total;
+        let shift = self.shifts(&model.net, state, part);
+        for (u, shift) in state.sliding.iter_mut().zip(&shift) {
+            *u += shift;
         }
-        anchors.shift(stacks, |v| -part * self.total[v]);
+        anchors.shift(stacks, |v| shift[v]);
         state.taken_in += part;
         self.shorten_turns(model, part);
+    }
+
+    /// What is added to each sliding coordinate when `part` of it all is taken in, [visit_count] [m].
+    fn shifts(&self, net: &YarnNet, state: &YarnState, part: f64) -> Vec<f64> {
+        let yarn_of = |segment: VisitId| net.visits[segment.index()].yarn.index();
+        let has = |segment: VisitId| {
+            let next = net.next(segment)?;
+            let yarn = yarn_of(segment);
+            let around = if next > segment { 0.0 } else { net.yarns[yarn].period? };
+            let shorter = if next > segment { 0.0 } else { state.taken_in * self.of_yarn[yarn] };
+            Some(state.sliding[next.index()] + around - shorter - state.sliding[segment.index()])
+        };
+        let mut all = vec![0.0; net.yarns.len()];
+        let mut shift = vec![0.0; net.visits.len()];
+        for taken in &net.taken_in {
+            all[yarn_of(taken.segment)] += has(taken.segment).unwrap_or_default();
+        }
+        for taken in &net.taken_in {
+            let yarn = yarn_of(taken.segment);
+            if let Some(next) = net.next(taken.segment).filter(|next| *next > taken.segment) {
+                let share = has(taken.segment).unwrap_or_default() / all[yarn];
+                shift[next.index()] -= part * self.of_yarn[yarn] * share;
+            }
+        }
+        for yarn in &net.yarns {
+            let mut sum = 0.0;
+            for v in yarn.visits.clone() {
+                sum += shift[v as usize];
+                shift[v as usize] = sum;
+            }
+        }
+        shift
     }
 }
 

@@ -3,7 +3,7 @@
 //! # Theory
 //! A complete factorisation of n unknowns takes some n^1.5 operations. Conjugate gradients with an incomplete one take
 //! time in proportion to n, since what makes the system hard is local: axial stretch. They solve all but small systems; the
-//! complete factorisation solves those, and any that the iterations fail on.
+//! complete factorisation solves those, and any of medium size that the iterations fail on.
 //!
 //! # Practice
 //! A step in all at h = 5 ms, on one core:
@@ -69,8 +69,14 @@ const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
 /// few, and trying in vain costs as much as solving.
 const DIRECT_AFTER_FAILURE: u32 = 8;
 
-/// Iterations after which to give up; by then a direct solution would have been faster.
+/// Iterations after which to give up; by then a direct solution would have been faster, where there is one.
 const MOST_ITERATIONS: usize = 80;
+
+/// Unknowns above which nothing is solved directly: it takes minutes and gigabytes. The step fails, and is taken again in two.
+const MOST_DIRECT: usize = 200_000;
+
+/// Iterations after which to give up where nothing else is left: the systems of shorter steps take fewer.
+const MOST_ITERATIONS_ALONE: usize = 240;
 
 /// Iterations after which to give up with a complete factorisation, which leaves rounding and the tail to them.
 const MOST_ITERATIONS_OF_TAIL: usize = 400;
@@ -115,7 +121,7 @@ impl Solver {
         Self { incomplete: None, complete: Some(complete), direct_for: 0 }
     }
 
-    /// Solves by an incomplete factorisation, and where that fails by a complete one.
+    /// Solves by an incomplete factorisation, and where that fails by a complete one if the system is not too large.
     pub fn iterative(model: &Model, matrix: &BlockMatrix) -> Self {
         let incomplete = Factor::new(Pattern::incomplete(model, matrix));
         Self { incomplete: Some(incomplete), complete: None, direct_for: 0 }
@@ -142,10 +148,11 @@ impl Solver {
         if self.direct_for > 0 {
             self.direct_for -= 1;
         } else if let Some(incomplete) = &mut self.incomplete {
-            if factorise_and_iterate(matrix, incomplete, nodes, rhs, x, (MOST_ITERATIONS, TOLERANCE), costs)
-                .is_ok()
-            {
-                return Ok(());
+            let alone = matrix.dof_count() > MOST_DIRECT;
+            let most = if alone { MOST_ITERATIONS_ALONE } else { MOST_ITERATIONS };
+            let solved = factorise_and_iterate(matrix, incomplete, nodes, rhs, x, (most, TOLERANCE), costs);
+            if alone || solved.is_ok() {
+                return solved;
             }
             tracing::debug!("the incomplete factorisation failed, solving directly");
             self.direct_for = DIRECT_AFTER_FAILURE;
