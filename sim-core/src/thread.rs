@@ -2,13 +2,17 @@
 //!
 //! Commands go in through a channel; the newest snapshot lies in a slot that is replaced after every step. Nobody waits: a
 //! snapshot that nobody took is dropped, and between two steps the thread looks at everything that was sent meanwhile.
-//! Time goes no faster than on the clock, so that a small swatch falls as one would see it fall.
+//! Time goes no faster than on the clock, so that a small swatch falls as one would see it fall (`pace.rs`).
 
+use crate::choice::{SharedGpu, SolverChoice};
 use crate::curves::curves;
 use crate::forces::HoldFact;
 use crate::materials::Materials;
+use crate::pace::Pace;
+use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::simulator::{SimError, Simulator};
+use crate::simulation::Simulation;
+use crate::simulator::SimError;
 use crate::surgery::{Operation, Surgery};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -38,6 +42,10 @@ pub enum SimCommand {
     Pause,
     /// One step while held.
     StepOnce,
+    /// Back to where it was loaded, in the scene and of the materials that it has now.
+    Reset,
+    /// Solve with this from now on, whatever is loaded.
+    SetSolver(SolverChoice),
     /// Replace the scene: dragging a pin, moving a body.
     SetScene(Scene),
     /// Replace the materials.
@@ -49,11 +57,12 @@ pub enum SimCommand {
 }
 
 /// The newest state of a simulation thread.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Snapshot {
     /// Which `Load` it belongs to, counted from 1.
     pub generation: u64,
-    /// The state; the one loaded, if that can't be simulated.
+    /// The state; the one loaded, if that can't be simulated. While a GPU simulates, one of at most 0.05 s of simulated time
+    /// before.
     pub state: YarnState,
     /// The net, which is no longer the one loaded once yarn has been cut or has slipped out.
     pub net: Arc<YarnNet>,
@@ -71,6 +80,14 @@ pub struct Snapshot {
     pub holds: Vec<HoldFact>,
     /// What last went wrong, if anything. A simulation that is stuck is paused.
     pub error: Option<String>,
+    /// Whether it has been stepped or reset since it was loaded.
+    pub moved: bool,
+    /// What solves it: "direct", "iterative" or "gpu"; nothing, if it can't be simulated.
+    pub solver: &'static str,
+    /// The name of the GPU that simulates it.
+    pub adapter: Option<String>,
+    /// Why the GPU that was to simulate it does not, or no longer.
+    pub notice: Option<String>,
     /// Clock time of the last step [ms].
     pub ms_per_step: f64,
 }
@@ -84,14 +101,16 @@ pub struct SimThread {
 }
 
 impl SimThread {
-    /// Starts a thread, idle until something is loaded. `wake` is called, in that thread, whenever there is a new snapshot.
+    /// Starts a thread, idle until something is loaded. It simulates on `gpu` where that is the best. `wake` is called, in that
+    /// thread, whenever there is a new snapshot.
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub fn spawn(wake: Box<dyn Fn() + Send>) -> std::io::Result<Self> {
+    pub fn spawn(gpu: SharedGpu, wake: Box<dyn Fn() + Send>) -> std::io::Result<Self> {
         let (commands, received) = channel();
         let latest = Arc::new(Mutex::new(None));
-        let worker = Worker { latest: Arc::clone(&latest), wake, run: None, loads: 0 };
+        let choice = SolverChoice::default();
+        let worker = Worker { latest: Arc::clone(&latest), wake, gpu, choice, run: None, loads: 0 };
         let thread =
             std::thread::Builder::new().name("simulation".to_owned()).spawn(|| worker.work(received))?;
         Ok(Self { commands: Some(commands), latest, loads: AtomicU64::new(0), thread: Some(thread) })
@@ -123,23 +142,32 @@ impl Drop for SimThread {
     }
 }
 
+/// What is loaded.
+#[derive(Clone)]
+struct Loaded {
+    net: Arc<YarnNet>,
+    materials: Materials,
+    scene: Scene,
+    state: Arc<YarnState>,
+}
+
 /// One loaded net.
 struct Run {
-    net: Arc<YarnNet>,
+    loaded: Loaded,
     /// None where the net, material, scene or state can't be simulated.
-    simulator: Option<Simulator>,
-    loaded: Arc<YarnState>,
-    materials: Materials,
+    simulation: Option<Simulation>,
     playing: bool,
+    moved: bool,
     error: Option<String>,
     ms_per_step: f64,
-    /// When the next step is due.
-    due: Instant,
+    pace: Pace,
 }
 
 struct Worker {
     latest: Arc<Mutex<Option<Arc<Snapshot>>>>,
     wake: Box<dyn Fn() + Send>,
+    gpu: SharedGpu,
+    choice: SolverChoice,
     run: Option<Run>,
     loads: u64,
 }
@@ -147,11 +175,7 @@ struct Worker {
 impl Worker {
     fn work(mut self, commands: Receiver<SimCommand>) {
         loop {
-            let wait = self
-                .run
-                .as_ref()
-                .filter(|r| r.playing)
-                .map(|r| r.due.saturating_duration_since(Instant::now()));
+            let wait = self.run.as_ref().filter(|r| r.playing).map(|r| r.pace.until_due(Instant::now()));
             let command = match wait {
                 Some(time) => commands.recv_timeout(time),
                 None => commands.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -177,69 +201,79 @@ impl Worker {
                 let is_laid_no_more = state.is_some();
                 let state = state.unwrap_or_else(|| Arc::new(net.laid_state()));
                 // After an edit, what moves goes on.
-                let before = run.as_ref().and_then(|r| r.simulator.as_ref());
+                let before = run.as_ref().and_then(|r| r.simulation.as_ref());
                 let before = before
                     .filter(|s| is_laid_no_more && s.scene().moves_like(&scene))
-                    .map(Simulator::scene_time_s);
-                let mut new = Run::new(net, materials, scene, state);
-                if let (Some(simulator), Some(time_s)) = (&mut new.simulator, before) {
-                    simulator.resume_at(time_s);
+                    .map(|s| s.progress().scene_time_s);
+                let mut new = Run::new(&self.gpu, self.choice, Loaded { net, materials, scene, state });
+                if let (Some(simulation), Some(time_s)) = (&mut new.simulation, before) {
+                    simulation.resume_at(time_s);
                 }
                 *run = Some(new);
             }
+            (SimCommand::SetSolver(choice), run) => {
+                self.choice = choice;
+                if let Some(simulation) = run.as_mut().and_then(|r| r.simulation.as_mut()) {
+                    simulation.set_choice(&self.gpu, choice);
+                }
+            }
             (SimCommand::Stop, run) => *run = None,
             (_, None) => {}
+            (SimCommand::Reset, Some(run)) => {
+                let playing = run.playing;
+                *run = Run::new(&self.gpu, self.choice, run.loaded.clone());
+                run.moved = true;
+                if playing {
+                    run.play();
+                }
+            }
             (SimCommand::Play, Some(run)) => run.play(),
             (SimCommand::Pause, Some(run)) => run.playing = false,
             (SimCommand::StepOnce, Some(run)) => run.step(),
-            (SimCommand::SetScene(scene), Some(run)) => run.set(|s| s.set_scene(scene)),
-            (SimCommand::SetMaterials(materials), Some(run)) => {
-                run.materials = materials.clone();
-                run.set(|s| s.set_materials(materials));
+            (SimCommand::SetScene(scene), Some(run)) => {
+                run.set(|s| s.set_scene(&scene));
+                run.loaded.scene = scene;
             }
-            (SimCommand::Operate(operation), Some(run)) => run.set(|s| s.operate(operation)),
+            (SimCommand::SetMaterials(materials), Some(run)) => {
+                run.set(|s| s.set_materials(&materials));
+                run.loaded.materials = materials;
+            }
+            (SimCommand::Operate(operation), Some(run)) => run.set(|s| s.operate(&operation)),
         }
     }
 
-    fn publish(&self) {
-        let snapshot = self.run.as_ref().map(|run| Arc::new(run.snapshot(self.loads)));
+    fn publish(&mut self) {
+        let snapshot = self.run.as_mut().map(|run| Arc::new(run.snapshot(self.loads)));
         *self.latest.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
         (self.wake)();
     }
 }
 
 impl Run {
-    fn new(net: Arc<YarnNet>, materials: Materials, scene: Scene, state: Arc<YarnState>) -> Self {
-        let made = Simulator::new(&net, materials.clone(), scene, (*state).clone());
-        let (simulator, error) = match made {
-            Ok(simulator) => (Some(simulator), None),
+    fn new(gpu: &SharedGpu, choice: SolverChoice, loaded: Loaded) -> Self {
+        let Loaded { net, materials, scene, state } = &loaded;
+        let made = Simulation::new(gpu, choice, net, materials.clone(), scene.clone(), (**state).clone());
+        let (simulation, error) = match made {
+            Ok(simulation) => (Some(simulation), None),
             Err(error) => (None, Some(error.to_string())),
         };
-        Self {
-            net,
-            simulator,
-            loaded: state,
-            materials,
-            playing: false,
-            error,
-            ms_per_step: 0.0,
-            due: Instant::now(),
-        }
+        let pace = Pace::starting(Instant::now());
+        Self { loaded, simulation, playing: false, moved: false, error, ms_per_step: 0.0, pace }
     }
 
     fn play(&mut self) {
-        self.playing = self.simulator.is_some();
-        self.due = Instant::now();
+        self.playing = self.simulation.is_some();
+        self.pace = Pace::starting(Instant::now());
     }
 
     fn step(&mut self) {
-        let Some(simulator) = &mut self.simulator else { return };
+        let Some(simulation) = &mut self.simulation else { return };
         let start = Instant::now();
-        match simulator.step() {
+        match simulation.step() {
             Ok(report) => {
                 self.error = None;
-                // Never catch up on time that was lost: a slow step makes slow motion, not a jump.
-                self.due = start.max(self.due) + Duration::from_secs_f64(report.time_step);
+                self.moved = true;
+                self.pace.step(Duration::from_secs_f64(report.time_step), Instant::now());
             }
             Err(error) => {
                 self.error = Some(error.to_string());
@@ -249,35 +283,63 @@ impl Run {
         self.ms_per_step = start.elapsed().as_secs_f64() * 1e3;
     }
 
-    fn set(&mut self, change: impl FnOnce(&mut Simulator) -> Result<(), SimError>) {
-        if let Some(simulator) = &mut self.simulator {
-            self.error = change(simulator).err().map(|e| e.to_string());
+    fn set(&mut self, change: impl FnOnce(&mut Simulation) -> Result<(), SimError>) {
+        if let Some(simulation) = &mut self.simulation {
+            self.error = change(simulation).err().map(|e| e.to_string());
         }
     }
 
-    fn snapshot(&self, generation: u64) -> Snapshot {
-        let state = self.simulator.as_ref().map_or(&*self.loaded, Simulator::state);
-        let net = self.simulator.as_ref().map_or(&self.net, Simulator::net);
-        let drawable = state.fits(net) && state.is_finite();
-        Snapshot {
-            generation,
-            state: state.clone(),
-            net: Arc::clone(net),
-            surgery: self.simulator.as_ref().map(|s| s.surgery().clone()).unwrap_or_default(),
-            curves: if drawable { curves(net, state, &self.materials) } else { YarnCurves::default() },
-            time_s: self.simulator.as_ref().map_or(0.0, Simulator::time_s),
-            scene_time_s: self.simulator.as_ref().map_or(0.0, Simulator::scene_time_s),
-            holds: self.simulator.as_ref().map_or_else(Vec::new, Simulator::holds),
-            playing: self.playing,
-            error: self.error.clone(),
-            ms_per_step: self.ms_per_step,
-        }
+    fn snapshot(&mut self, generation: u64) -> Snapshot {
+        let mut snapshot = match &mut self.simulation {
+            Some(simulation) => of_simulation(simulation, self.playing),
+            None => of_loaded(&self.loaded),
+        };
+        snapshot.error = self.error.clone().or(snapshot.error);
+        let Self { playing, moved, ms_per_step, .. } = *self;
+        Snapshot { generation, playing, moved, ms_per_step, ..snapshot }
+    }
+}
+
+/// What there is to see of a simulation, its state as the CPU has it while it plays.
+fn of_simulation(simulation: &mut Simulation, playing: bool) -> Snapshot {
+    let read = if playing { Ok(()) } else { simulation.state().map(|_| ()) };
+    let drawn = read.and_then(|()| simulation.curves());
+    let (curves, error) = match drawn {
+        Ok(curves) => (curves, None),
+        Err(error) => (YarnCurves::default(), Some(error.to_string())),
+    };
+    let Progress { time_s, scene_time_s, ref surgery, .. } = *simulation.progress();
+    Snapshot {
+        state: simulation.last_state().clone(),
+        net: Arc::clone(simulation.net()),
+        surgery: surgery.clone(),
+        curves,
+        time_s,
+        scene_time_s,
+        holds: simulation.holds(),
+        error,
+        solver: simulation.solver(),
+        adapter: simulation.adapter().map(str::to_owned),
+        notice: simulation.notice().map(str::to_owned),
+        ..Snapshot::default()
+    }
+}
+
+/// What there is to see of what can't be simulated.
+fn of_loaded(Loaded { net, materials, state, .. }: &Loaded) -> Snapshot {
+    let drawable = state.fits(net) && state.is_finite();
+    Snapshot {
+        state: (**state).clone(),
+        net: Arc::clone(net),
+        curves: if drawable { curves(net, state, materials) } else { YarnCurves::default() },
+        ..Snapshot::default()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::GpuDevice;
     use crate::material::Material;
     use std::sync::mpsc::Receiver;
     use stitch_mesh::ids::VisitId;
@@ -286,7 +348,7 @@ mod tests {
     fn thread() -> (SimThread, Receiver<()>) {
         let (woken, wakes) = channel();
         let wake = Box::new(move || woken.send(()).unwrap_or_default());
-        (SimThread::spawn(wake).unwrap(), wakes)
+        (SimThread::spawn(SharedGpu::default(), wake).unwrap(), wakes)
     }
 
     fn load(thread: &SimThread, spoil: impl Fn(&mut YarnState)) -> u64 {
@@ -340,6 +402,75 @@ mod tests {
         let refused = wait(&thread, &wakes, |s| s.error.is_some());
         assert!(refused.error.as_deref().unwrap().contains("there is no visit 1048576"));
         assert_eq!(refused.surgery.operations.len(), 1);
+    }
+
+    #[test]
+    fn reset_goes_back_to_where_it_was_loaded() {
+        let (thread, wakes) = thread();
+        load(&thread, |state| state.position[3].z += 1e-4);
+        let loaded = wait(&thread, &wakes, |s| s.generation == 1);
+        assert!(!loaded.moved);
+        thread.send(SimCommand::Play);
+        wait(&thread, &wakes, |s| s.time_s > 0.02);
+        thread.send(SimCommand::Operate(Operation::Cut(VisitId(40))));
+        wait(&thread, &wakes, |s| s.surgery.operations.len() == 1);
+        thread.send(SimCommand::Pause);
+        thread.send(SimCommand::Reset);
+        let reset = wait(&thread, &wakes, |s| s.moved && s.time_s == 0.0);
+        assert_eq!((&reset.state, reset.surgery.operations.len()), (&loaded.state, 0));
+        assert!(Arc::ptr_eq(&reset.net, &loaded.net) && !reset.playing);
+    }
+
+    #[test]
+    fn goes_on_with_another_solver() {
+        let (thread, wakes) = thread();
+        load(&thread, |_| {});
+        thread.send(SimCommand::StepOnce);
+        let before = wait(&thread, &wakes, |s| s.time_s > 0.0);
+        assert_eq!(before.solver, "direct");
+        thread.send(SimCommand::SetSolver(SolverChoice::Iterative));
+        let after = wait(&thread, &wakes, |s| s.solver == "iterative");
+        assert_eq!((&after.state, after.time_s), (&before.state, before.time_s));
+        load(&thread, |_| {});
+        wait(&thread, &wakes, |s| s.generation == 2 && s.solver == "iterative");
+    }
+
+    #[test]
+    fn a_lost_gpu_is_no_loss() {
+        let Ok(gpu) = GpuDevice::open() else {
+            println!("SKIPPED: there is no GPU here, nor a software one");
+            return;
+        };
+        let (woken, wakes) = channel();
+        let wake = Box::new(move || woken.send(()).unwrap_or_default());
+        let thread = SimThread::spawn(SharedGpu::from(gpu.clone()), wake).unwrap();
+        thread.send(SimCommand::SetSolver(SolverChoice::Gpu));
+        load(&thread, |_| {});
+        for n in 1..=3 {
+            thread.send(SimCommand::StepOnce);
+            wait(&thread, &wakes, |s| s.time_s > (f64::from(n) - 0.5) * Scene::empty().time_step);
+        }
+        let cut = SimCommand::Operate(Operation::Cut(VisitId(40)));
+        thread.send(cut);
+        let good = wait(&thread, &wakes, |s| s.surgery.operations.len() == 1);
+        assert_eq!((good.solver, good.adapter.as_deref()), ("gpu", Some(gpu.adapter.name.as_str())));
+        assert!(good.notice.is_none() && good.error.is_none());
+        gpu.destroy();
+        thread.send(SimCommand::StepOnce);
+        let after = wait(&thread, &wakes, |s| s.time_s > good.time_s);
+        assert_eq!((after.solver, after.adapter.as_ref()), ("direct", None));
+        let notice = after.notice.as_deref().unwrap();
+        assert!(notice.starts_with("the GPU was lost") && notice.contains("going on on the CPU"), "{notice}");
+        assert!(after.error.is_none());
+        // One step further, with the yarn cut and the simulation as long as before.
+        assert_eq!(after.surgery, good.surgery);
+        assert!((after.time_s - good.time_s - Scene::empty().time_step).abs() < 1e-9);
+        let moved = after.state.position.iter().zip(&good.state.position).map(|(a, b)| a.distance(*b));
+        let furthest = moved.fold(0.0, f64::max);
+        assert!(furthest > 0.0 && furthest < 1e-3, "{furthest}");
+        // What is loaded next begins on the CPU.
+        load(&thread, |_| {});
+        wait(&thread, &wakes, |s| s.generation == 2 && s.solver == "direct" && s.notice.is_some());
     }
 
     #[test]

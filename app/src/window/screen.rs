@@ -4,6 +4,7 @@ use anyhow::Result;
 use egui_wgpu::Renderer as Painter;
 use egui_wgpu::wgpu::FilterMode;
 use render::{Camera, Drawing, Faces, Gpu, Lines, Quality, Renderer, Scene, Solids, Viewport};
+use sim_core::SharedGpu;
 use std::sync::Arc;
 use stitch_mesh::yarn_curves::YarnCurves;
 
@@ -33,6 +34,11 @@ impl Screen {
         let texture =
             painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
         Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture, drawn: None })
+    }
+
+    /// The device of the screen, to simulate on.
+    pub fn shared_gpu(&self) -> SharedGpu {
+        SharedGpu::of(&self.gpu.adapter_info, &self.gpu.device, &self.gpu.queue)
     }
 
     /// Replaces all that is shown.

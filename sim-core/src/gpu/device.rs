@@ -61,6 +61,22 @@ impl GpuDevice {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| GpuError::NoDevice(error.to_string()))?;
+        Self::of(adapter.get_info(), &device, &queue)
+    }
+
+    /// Simulates on a device that somebody else made and also uses, for example to draw on. What goes wrong on it is taken down
+    /// here from now on.
+    ///
+    /// # Errors
+    /// Its limits are lower than those of every WebGPU device.
+    pub fn of(
+        adapter: wgpu::AdapterInfo,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<Self, GpuError> {
+        if !LIMITS.check_limits(&device.limits()) {
+            return Err(GpuError::NoDevice("its limits are too low for compute shaders".to_owned()));
+        }
         let failure = Arc::new(Mutex::new(None));
         let failed = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| keep(&failed, GpuError::Lost(message)));
@@ -72,7 +88,13 @@ impl GpuDevice {
             };
             keep(&failed, error);
         }));
-        Ok(Self { device, queue, adapter: adapter.get_info(), failure, kernels: Arc::default() })
+        let (device, queue) = (device.clone(), queue.clone());
+        Ok(Self { device, queue, adapter, failure, kernels: Arc::default() })
+    }
+
+    /// Whether the processor itself does the work, which it can do better without the detour.
+    pub fn is_software(&self) -> bool {
+        self.adapter.device_type == wgpu::DeviceType::Cpu
     }
 
     /// The kernels, compiled.
@@ -86,12 +108,16 @@ impl GpuDevice {
         self.device.destroy();
     }
 
-    /// Whether nothing has gone wrong so far.
+    /// Whether nothing has gone wrong since this was last asked. A lost device stays lost.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         // A lost device first refuses everything, and then says why.
         let _ = self.device.poll(wgpu::PollType::Poll);
-        match &*self.failure.lock().unwrap_or_else(PoisonError::into_inner) {
-            Some(error) => Err(error.clone()),
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        match failure.take() {
+            Some(error) => {
+                *failure = Some(error.clone()).filter(|e| matches!(e, GpuError::Lost(_)));
+                Err(error)
+            }
             None => Ok(()),
         }
     }

@@ -37,11 +37,16 @@
 //! - Topology edits and yarn that slips out make a new net, on the CPU, and new tables.
 //! - Run on lavapipe only, where it is slower than the CPU solver; speed on hardware has not been measured.
 
+mod buffers;
 mod device;
+mod elements;
+mod exchange;
 mod kernel;
 mod layout;
 mod pattern;
 mod simulator;
+mod stages;
+mod surroundings;
 mod system;
 mod tables;
 #[cfg(test)]

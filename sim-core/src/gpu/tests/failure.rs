@@ -45,9 +45,9 @@ fn a_third_of_a_million_loops_fit_into_chunks() {
     println!(
         "{} bytes a loop, the largest binding {}",
         gpu.bytes() / loops,
-        gpu.system().largest_whole() / loops
+        gpu.system().buffers.largest_whole() / loops
     );
     assert!(gpu.bytes() / loops < 23_000);
     // Whole arrays are one binding; a swatch has more border a loop than a large piece.
-    assert!(325_000 * gpu.system().largest_whole() / loops < 128 << 20);
+    assert!(325_000 * gpu.system().buffers.largest_whole() / loops < 128 << 20);
 }
