@@ -2,7 +2,6 @@
 
 use wgpu::BindingResource::TextureView;
 
-use crate::occlusion::COARSE;
 use crate::pipeline::{
     Pipeline, UNIFORM, begin_pass, bind_group, bind_group_layout, depth_alias, shader, texture,
 };
@@ -22,7 +21,7 @@ impl Compose {
         let color = texture(wgpu::TextureSampleType::Float { filterable: false }, false);
         let depth = texture(wgpu::TextureSampleType::Depth, samples > 1);
         let stages = wgpu::ShaderStages::FRAGMENT;
-        let layout = bind_group_layout(device, "compose", stages, &[UNIFORM, depth, color, COARSE]);
+        let layout = bind_group_layout(device, "compose", stages, &[UNIFORM, depth, color, color]);
         let constants = format!("const SUPERSAMPLING = {supersampling};");
         let module =
             shader(device, "compose", &[depth_alias(samples), &constants, include_str!("compose.wgsl")]);

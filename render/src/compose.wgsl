@@ -4,7 +4,7 @@
 
 @group(0) @binding(1) var depth: DEPTH_TEXTURE;
 @group(0) @binding(2) var scene: texture_2d<f32>;
-@group(0) @binding(3) var hollows: texture_2d<u32>;
+@group(0) @binding(3) var hollows: texture_2d<f32>;
 
 // The background: warm light grey, linear.
 const ABOVE = vec3f(0.815, 0.800, 0.775);
@@ -42,7 +42,7 @@ fn occlusion(pixel: vec2i) -> f32 {
     var weight = 0.0;
     for (var i = 0; i < 4; i++) {
         let step = vec2i(i & 1, i >> 1);
-        let tap = bitcast<vec2f>(textureLoad(hollows, clamp(base + step, vec2i(0), last), 0).rg);
+        let tap = textureLoad(hollows, clamp(base + step, vec2i(0), last), 0);
         let bilinear = mix(1.0 - f, f, vec2f(step));
         let w = bilinear.x * bilinear.y * max(0.0, 1.0 - abs(tap.g - here) / frame.occlusion_radius) + 1e-4;
         sum += w * tap.r;

@@ -4,10 +4,9 @@ use crate::pipeline::{
     Pipeline, UNIFORM, begin_pass, bind_group, bind_group_layout, depth_alias, shader, target, texture,
 };
 
-/// Light that arrives, and distance, at half the resolution of the scene: the bits of two floats, as every adapter draws into
-/// integers, but not every one into floats.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-pub(crate) const COARSE: wgpu::BindingType = texture(wgpu::TextureSampleType::Uint, false);
+/// Light that arrives, and distance, at half the resolution of the scene.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+const COARSE: wgpu::BindingType = texture(wgpu::TextureSampleType::Float { filterable: false }, false);
 
 /// The two passes: find the hollows, blur them.
 #[derive(Debug)]

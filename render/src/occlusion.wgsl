@@ -7,7 +7,7 @@
 // The type of `depth`, multisampled or not, and PAIRS are written in by occlusion.rs.
 
 @group(0) @binding(1) var depth: DEPTH_TEXTURE;
-@group(1) @binding(0) var coarse: texture_2d<u32>;
+@group(1) @binding(0) var coarse: texture_2d<f32>;
 
 // How dark the deepest hollow is: never black, for light between yarns bounces on.
 const STRENGTH = 1.15;
@@ -31,13 +31,9 @@ fn rise(here: f32, pixel: vec2i) -> f32 {
     return select(max(d, -1.0), max(0.0, 2.0 - d), d > 1.0);
 }
 
-// The bits of the light that arrives, 0…1, and of the distance [m].
+// Red: light that arrives, 0…1. Green: distance [m].
 @fragment
-fn find_hollows(@builtin(position) position: vec4f) -> @location(0) vec2u {
-    return bitcast<vec2u>(hollow(position));
-}
-
-fn hollow(position: vec4f) -> vec2f {
+fn find_hollows(@builtin(position) position: vec4f) -> @location(0) vec2f {
     let half_pixel = vec2i(position.xy);
     let pixel = half_pixel * 2;
     let here = distance_at(pixel);
@@ -59,17 +55,9 @@ fn hollow(position: vec4f) -> vec2f {
 
 // Mean over 4 × 4, of what is about as far away.
 @fragment
-fn blur(@builtin(position) position: vec4f) -> @location(0) vec2u {
-    return bitcast<vec2u>(blurred(position));
-}
-
-fn coarse_at(pixel: vec2i) -> vec2f {
-    return bitcast<vec2f>(textureLoad(coarse, pixel, 0).rg);
-}
-
-fn blurred(position: vec4f) -> vec2f {
+fn blur(@builtin(position) position: vec4f) -> @location(0) vec2f {
     let pixel = vec2i(position.xy);
-    let here = coarse_at(pixel);
+    let here = textureLoad(coarse, pixel, 0);
     if here.g == NOTHING || frame.occlusion_radius == 0.0 {
         return vec2f(1.0, here.g);
     }
@@ -78,7 +66,7 @@ fn blurred(position: vec4f) -> vec2f {
     var weight = 0.0;
     for (var y = -2; y < 2; y++) {
         for (var x = -2; x < 2; x++) {
-            let tap = coarse_at(clamp(pixel + vec2i(x, y), vec2i(0), last));
+            let tap = textureLoad(coarse, clamp(pixel + vec2i(x, y), vec2i(0), last), 0);
             let w = max(0.0, 1.0 - abs(tap.g - here.g) / frame.occlusion_radius) + 1e-4;
             sum += w * tap.r;
             weight += w;

@@ -110,7 +110,7 @@ impl Measured {
     pub fn text(&self) -> String {
         let stages: Vec<String> = self.stages().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         let on = self.adapter.as_ref().map_or_else(String::new, |adapter| format!(" on {adapter}"));
-        let peak = self.peak_mib.map_or_else(String::new, |mib| format!(", {mib:.0} MiB at most so far"));
+        let peak = self.peak_mib.map_or_else(String::new, |mib| format!(", {mib:.0} MiB at most"));
         let device = match self.device_bytes {
             0 => String::new(),
             bytes => format!(", {:.0} MiB on the GPU", bytes as f64 / MIB),

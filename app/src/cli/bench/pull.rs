@@ -1,6 +1,6 @@
 //! Stockinette that is pulled.
 
-use super::machine::Machine;
+use super::machine::{Machine, forget_peak};
 use super::measured::Measured;
 use crate::cli::Output;
 use anyhow::Result;
@@ -45,10 +45,11 @@ pub fn run(solver: SolverChoice, print: Output) -> Result<()> {
     };
     let clamps = vec![jaw(0, "left", -1.0), jaw(SIDE - 1, "right", 1.0)];
     let scene = Scene { clamps, time_step: STEP, ..Scene::empty() };
+    let machine = Machine::measure();
+    forget_peak();
     let material = Material::for_loop_width(LOOP);
     let mut simulation =
         Simulation::new(&SharedGpu::default(), solver, &net, material, scene, net.laid_state())?;
-    let machine = Machine::measure();
     let pulled = |s: &Simulation| s.progress().time_s < TIME - 1e-9;
     let measured = Measured::steps(&machine, SIDE * SIDE, &mut simulation, pulled)?;
     let mut json = measured.json();

@@ -1,6 +1,6 @@
 //! The same garments in more and more loops.
 
-use super::machine::Machine;
+use super::machine::{Machine, forget_peak};
 use super::measured::Measured;
 use crate::bundled::find;
 use crate::cli::Output;
@@ -32,6 +32,7 @@ pub fn run(most_loops: usize, solver: SolverChoice, print: Output) -> Result<()>
     let gpu = SharedGpu::default();
     let mut runs = Vec::new();
     for (name, wanted) in RUNS.into_iter().filter(|(_, loops)| *loops <= most_loops) {
+        forget_peak();
         let project = find(name).with_context(|| format!("there is no {name}"))?.of_loops(wanted)?;
         let fabric = project.fabric()?;
         let loops = fabric.stitches.loop_count();

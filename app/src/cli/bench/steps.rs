@@ -1,6 +1,6 @@
 //! A step stage by stage, by each solver.
 
-use super::machine::Machine;
+use super::machine::{Machine, forget_peak};
 use super::measured::Measured;
 use crate::cli::Output;
 use anyhow::Result;
@@ -31,6 +31,7 @@ pub fn run(solvers: &[SolverChoice], print: Output) -> Result<()> {
     let gpu = SharedGpu::default();
     let mut runs = Vec::new();
     for (solver, time_step) in solvers.iter().flat_map(|s| [(*s, 5e-3), (*s, 10e-3)]) {
+        forget_peak();
         let scene = Scene { pins: pins.clone(), time_step, ..Scene::default() };
         let material = Material::for_loop_width(LOOP);
         let mut simulation = Simulation::new(&gpu, solver, &net, material, scene, net.laid_state())?;

@@ -130,3 +130,22 @@ fn solvers_take_turns() {
     println!("moved {moved:.1e}, apart {difference:.1e}");
     assert!(moved > 5e-4 && difference < 0.02 * moved);
 }
+
+/// 325 000 loops, of 24 KB each, need 7.8 GB in chunks; what is not in chunks has to fit into one binding.
+#[test]
+fn a_third_of_a_million_loops_fit_into_chunks() {
+    let Some(device) = device() else { return };
+    let (wide, high) = (24, 24);
+    let net = Arc::new(lay(&rectangle(wide, high, StitchSize::of_width(3e-3)).unwrap()));
+    let material = Material::for_loop_width(3e-3);
+    let gpu = GpuSimulator::new(&device, &net, material, Scene::default(), net.laid_state()).unwrap();
+    let loops = (wide * high) as u64;
+    println!(
+        "{} bytes a loop, the largest binding {}",
+        gpu.bytes() / loops,
+        gpu.system().buffers.largest_whole() / loops
+    );
+    assert!(gpu.bytes() / loops < 24_000);
+    // Whole arrays are one binding; a swatch has more border a loop than a large piece.
+    assert!(325_000 * gpu.system().buffers.largest_whole() / loops < 128 << 20);
+}
