@@ -79,7 +79,7 @@ pub use curves::curves;
 pub use energies::Energies;
 pub use facts::Facts;
 pub use forces::{Forces, HoldFact};
-pub use gpu::{GpuDevice, GpuError, GpuSimulator};
+pub use gpu::{DeviceYarn, GpuDevice, GpuError, GpuSimulator, YarnRun};
 pub use material::{Material, MaterialError};
 pub use materials::Materials;
 pub use mesh_sequence::{Frames, MeshSequence, SequenceError};

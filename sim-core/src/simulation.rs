@@ -12,7 +12,7 @@ use crate::costs::{Costs, Work};
 use crate::curves::curves;
 use crate::facts::Facts;
 use crate::forces::HoldFact;
-use crate::gpu::{GpuError, GpuSimulator};
+use crate::gpu::{DeviceYarn, GpuError, GpuSimulator};
 use crate::handover::Handover;
 use crate::materials::Materials;
 use crate::progress::Progress;
@@ -190,6 +190,14 @@ impl Simulation {
     /// As [`Self::state`].
     pub fn curves(&mut self) -> Result<YarnCurves, SimError> {
         self.go_on(|gpu| Ok(gpu.curves()?), |cpu| Ok(curves(cpu.net(), cpu.state(), cpu.materials())))
+    }
+
+    /// The yarns as they are drawn, on the device of the renderer; none where it is simulated elsewhere, or that is too much.
+    ///
+    /// # Errors
+    /// As [`Self::state`].
+    pub fn device_yarn(&mut self) -> Result<Option<DeviceYarn>, SimError> {
+        self.go_on(|gpu| Ok(gpu.device_yarn()?), |_| Ok(None))
     }
 
     /// What there is to report of the simulation so far. Looks for the closest yarns, which takes about as long as a step.

@@ -7,6 +7,7 @@
 use crate::choice::{SharedGpu, SolverChoice};
 use crate::curves::curves;
 use crate::forces::HoldFact;
+use crate::gpu::DeviceYarn;
 use crate::materials::Materials;
 use crate::pace::Pace;
 use crate::progress::Progress;
@@ -70,6 +71,8 @@ pub struct Snapshot {
     pub surgery: Surgery,
     /// Its yarns, drawn with the radii of their materials; none where the state does not belong to the net.
     pub curves: YarnCurves,
+    /// The same where it is simulated on the device that it is drawn on; `curves` is then empty.
+    pub on_device: Option<DeviceYarn>,
     /// Simulated time since the load [s].
     pub time_s: f64,
     /// Whether time goes by.
@@ -303,10 +306,13 @@ impl Run {
 /// What there is to see of a simulation, its state as the CPU has it while it plays.
 fn of_simulation(simulation: &mut Simulation, playing: bool) -> Snapshot {
     let read = if playing { Ok(()) } else { simulation.state().map(|_| ()) };
-    let drawn = read.and_then(|()| simulation.curves());
-    let (curves, error) = match drawn {
-        Ok(curves) => (curves, None),
-        Err(error) => (YarnCurves::default(), Some(error.to_string())),
+    let drawn = read.and_then(|()| match simulation.device_yarn()? {
+        Some(yarn) => Ok((YarnCurves::default(), Some(yarn))),
+        None => Ok((simulation.curves()?, None)),
+    });
+    let ((curves, on_device), error) = match drawn {
+        Ok(drawn) => (drawn, None),
+        Err(error) => (Default::default(), Some(error.to_string())),
     };
     let Progress { time_s, scene_time_s, ref surgery, .. } = *simulation.progress();
     Snapshot {
@@ -314,6 +320,7 @@ fn of_simulation(simulation: &mut Simulation, playing: bool) -> Snapshot {
         net: Arc::clone(simulation.net()),
         surgery: surgery.clone(),
         curves,
+        on_device,
         time_s,
         scene_time_s,
         holds: simulation.holds(),

@@ -34,6 +34,8 @@ pub struct GpuDevice {
     pub(crate) queue: wgpu::Queue,
     /// Name, backend and kind of the adapter.
     pub adapter: wgpu::AdapterInfo,
+    /// Whether somebody else draws on it.
+    pub(crate) draws: bool,
     /// What went wrong first.
     failure: Arc<Mutex<Option<GpuError>>>,
     /// Compiled when they are first needed, once for all simulations.
@@ -61,10 +63,10 @@ impl GpuDevice {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| GpuError::NoDevice(error.to_string()))?;
-        Self::of(adapter.get_info(), &device, &queue)
+        Ok(Self { draws: false, ..Self::of(adapter.get_info(), &device, &queue)? })
     }
 
-    /// Simulates on a device that somebody else made and also uses, for example to draw on. What goes wrong on it is taken down
+    /// Simulates on a device that somebody else made and draws on. What goes wrong on it is taken down
     /// here from now on.
     ///
     /// # Errors
@@ -89,7 +91,7 @@ impl GpuDevice {
             keep(&failed, error);
         }));
         let (device, queue) = (device.clone(), queue.clone());
-        Ok(Self { device, queue, adapter, failure, kernels: Arc::default() })
+        Ok(Self { device, queue, adapter, draws: true, failure, kernels: Arc::default() })
     }
 
     /// Whether the processor itself does the work, which it can do better without the detour.

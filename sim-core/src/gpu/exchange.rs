@@ -3,7 +3,9 @@
 //! Positions go about the origin and sliding as displacement from where the yarn was laid, so that single precision does.
 
 use super::GpuError;
+use super::drawn::{DeviceYarn, Drawn};
 use super::simulator::GpuSimulator;
+use super::system::System;
 use crate::curves::string_together;
 use crate::friction::Anchors;
 use crate::model::FROZEN;
@@ -95,7 +97,8 @@ impl GpuSimulator {
     /// # Errors
     /// The GPU fails.
     pub fn curves(&mut self) -> Result<YarnCurves, GpuError> {
-        let points = self.system.points(self.params(self.step))?;
+        self.system.lay_points(self.params(self.step), &[]);
+        let [points] = self.system.read(["points"])?;
         let net = &self.model.net;
         let at = |i: usize| {
             let p = &points[4 * i..4 * i + 4];
@@ -112,5 +115,23 @@ impl GpuSimulator {
         Ok(string_together(net, &self.materials, &|visit| at(visit.index()), &|a, b| {
             middles.get(&[a, b]).or_else(|| middles.get(&[b, a])).copied().flatten()
         }))
+    }
+
+    /// The same without leaving the device, for a renderer that draws there; none where it draws elsewhere, or it is too much.
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn device_yarn(&mut self) -> Result<Option<DeviceYarn>, GpuError> {
+        if !self.system.gpu.draws {
+            return Ok(None);
+        }
+        if self.drawn.is_none() {
+            let System { kernels, .. } = &self.system;
+            self.drawn = Some(Drawn::new(&self.system, kernels, &self.model, &self.materials)?);
+        }
+        let params = self.params(self.step);
+        let Some(Some(drawn)) = &mut self.drawn else { return Ok(None) };
+        self.system.lay_points(params, drawn.tasks());
+        drawn.yarn(&self.system).map(Some)
     }
 }

@@ -45,6 +45,10 @@ pub(crate) const SOURCES: &[Source] = &[
     ("judge", include_str!("kernels/judge.wgsl"), &["judge"]),
     ("commit", include_str!("kernels/commit.wgsl"), &["commit"]),
     ("points", include_str!("kernels/points.wgsl"), &["lay_points", "lay_middles"]),
+    ("drawn", include_str!("kernels/drawn.wgsl"), &["lay_out"]),
+    ("frame", include_str!("kernels/frame.wgsl"), &["frame"]),
+    ("roll", include_str!("kernels/roll.wgsl"), &["roll"]),
+    ("bound", include_str!("kernels/bound.wgsl"), &["bound"]),
 ];
 
 /// A binding of a kernel file.

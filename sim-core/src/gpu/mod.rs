@@ -39,6 +39,7 @@
 
 mod buffers;
 mod device;
+mod drawn;
 mod elements;
 mod exchange;
 mod kernel;
@@ -53,4 +54,5 @@ mod tables;
 mod tests;
 
 pub use device::{GpuDevice, GpuError};
+pub use drawn::{DeviceYarn, YarnRun};
 pub use simulator::GpuSimulator;

@@ -2,6 +2,7 @@
 
 use super::GpuError;
 use super::device::{GpuDevice, LIMITS};
+use super::drawn::Drawn;
 use super::kernel::Kernels;
 use super::layout::{NONE, Params, REJECTED_LEAPING, REJECTED_SHRINKING, Status};
 use super::surroundings::fit;
@@ -56,6 +57,8 @@ pub struct GpuSimulator {
     iterations: u32,
     /// What the steps have cost; none where nobody wants to know.
     costs: Option<Costs>,
+    /// What lays out the yarn for a renderer, once one wants it; none where it can't.
+    pub(super) drawn: Option<Option<Drawn>>,
     /// The state as last read back.
     pub(super) state: YarnState,
     pub(super) is_read: bool,
@@ -112,6 +115,7 @@ impl GpuSimulator {
             progress,
             iterations: 16,
             costs: None,
+            drawn: None,
             state,
             is_read: true,
         };
@@ -192,6 +196,7 @@ impl GpuSimulator {
         let anchors = anchors.carried(&Stack::all(&net), &done.was, &self.state.sliding);
         self.upload_state(&anchors);
         self.read_at = self.progress.clone();
+        self.drawn = None;
         self.scene.follow(&done.node);
         self.upload_fields()
     }
@@ -257,6 +262,7 @@ impl GpuSimulator {
         self.system.set_materials(&self.model.resolve(&materials));
         self.mass_damping = mass_damping(&self.model, &materials);
         self.materials = materials;
+        self.drawn = None;
         Ok(())
     }
 

@@ -25,7 +25,7 @@ pub(crate) struct Verdict {
 /// A net on the device.
 pub(crate) struct System {
     pub gpu: GpuDevice,
-    kernels: Kernels,
+    pub kernels: Kernels,
     pub tables: Tables,
     pub buffers: Buffers,
     stages: Stages,
@@ -185,14 +185,12 @@ impl System {
         self.verdict()
     }
 
-    /// Control points of the yarns as they are drawn.
-    pub fn points(&self, params: Params) -> Result<Vec<f32>, GpuError> {
+    /// Lays the control points of the yarns as they are drawn, and does what follows with them.
+    pub fn lay_points(&self, params: Params, then: &[Task]) {
         self.write("params", &[params]);
         let mut submission = Submission::begin(&self.gpu, None);
-        submission.record(&self.stages.draw);
+        submission.record(self.stages.draw.iter().chain(then));
         submission.submit();
-        let [points] = self.read(["points"])?;
-        Ok(points)
     }
 
     fn verdict(&self) -> Result<Verdict, GpuError> {

@@ -1,6 +1,7 @@
 //! The kernels: valid everywhere, and each against its twin on the CPU wherever there is an adapter, if only a software one.
 
 mod agreement;
+mod drawn;
 mod failure;
 mod rest;
 mod scenes;
