@@ -13,10 +13,11 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// Loops on each side of what is measured.
 const SIDE: usize = 60;
 
-/// Memory that a loop may take once a simulation runs, and while that begins [bytes]. With conjugate gradients 19 KB and as much
-/// again at the beginning were found at any size; a complete factor grows with the width of the fabric.
+/// Memory that a loop may take before the first step, and after some [bytes]: 34 and 90 KB were found with conjugate gradients, which
+/// make a complete factor besides once they have failed on a system, and 61 KB by complete factorisation. A complete factor grows with
+/// the width of the fabric, all else only with its loops.
 const BOUNDS: [(SolverChoice, usize, usize); 2] =
-    [(SolverChoice::Iterative, 100_000, 110_000), (SolverChoice::Direct, 200_000, 220_000)];
+    [(SolverChoice::Iterative, 40_000, 100_000), (SolverChoice::Direct, 70_000, 70_000)];
 
 #[test]
 fn a_loop_takes_so_much_memory() {
@@ -25,20 +26,21 @@ fn a_loop_takes_so_much_memory() {
     let held = net.nodes.iter().enumerate().filter(|(_, n)| n.face.is_some_and(|f| f.index() >= last));
     let pins = held.map(|(i, n)| Pin { node: i as u32, target: n.position, stiffness: 10.0 }).collect();
     let hanging = Scene { pins, ..Scene::default() };
-    for (choice, most, most_at_the_beginning) in BOUNDS {
+    for (choice, most, most_after_steps) in BOUNDS {
         let before = MEMORY.current_usage();
+        let of_loop = |bytes: usize| (bytes - before) / (SIDE * SIDE);
         MEMORY.reset_peak_usage();
         let (gpu, material) = (SharedGpu::default(), Material::for_loop_width(3e-3));
         let mut simulation =
             Simulation::new(&gpu, choice, &net, material, hanging.clone(), net.laid_state()).unwrap();
+        let made = of_loop(MEMORY.current_usage());
         for _ in 0..3 {
             simulation.step().unwrap();
         }
-        let of_loop = |bytes: usize| (bytes - before) / (SIDE * SIDE);
-        let (now, peak) = (of_loop(MEMORY.current_usage()), of_loop(MEMORY.peak_usage()));
-        println!("{choice:?}: {now} bytes a loop, {peak} at most");
-        assert!(now < most && peak < most_at_the_beginning, "{choice:?}: {now}, {peak}");
+        let (stepped, peak) = (of_loop(MEMORY.current_usage()), of_loop(MEMORY.peak_usage()));
+        println!("{choice:?}: {made} bytes a loop, {stepped} after some steps, {peak} at most");
+        assert!(made < most && peak < most_after_steps, "{choice:?}: {made}, {peak}");
         // It is counted at all: positions, velocities and sliding of a loop alone take this.
-        assert!(now > 4 * 48 + 8 * 16);
+        assert!(made > 4 * 48 + 8 * 16);
     }
 }

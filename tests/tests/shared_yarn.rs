@@ -85,7 +85,8 @@ fn yarn_is_drawn_where_it_is_simulated() {
         elsewhere.set_yarn(gpu(), &moved).unwrap();
         for (distance, away, most) in DISTANCES {
             let camera = Camera { distance: away * fitted.distance, ..fitted };
-            let shown = |scene, how| picture(scene, &camera, &format!("yarn-{name}-{distance}-{how}"));
+            let shown =
+                |scene: &Scene, how: &str| picture(scene, &camera, &format!("yarn-{name}-{distance}-{how}"));
             let background = shown(&Scene::new(), "background");
             let (ours, theirs) = (shown(&drawn, "curves"), shown(&shared, "shared"));
             let unlike = difference(&ours, &theirs, &background);
