@@ -192,7 +192,11 @@ pub(crate) const LIMITS: wgpu::Limits = wgpu::Limits::defaults();
 
 /// Keeps the first failure, or the loss of the device, from which the others follow.
 fn keep(failure: &Mutex<Option<GpuError>>, error: GpuError) {
-    tracing::debug!(%error, "gpu");
+    match &error {
+        // A mistake in this program, perhaps in what else it does with the device.
+        GpuError::Refused(_) => tracing::error!(%error),
+        _ => tracing::warn!(%error),
+    }
     let mut kept = failure.lock().unwrap_or_else(PoisonError::into_inner);
     if kept.is_none() || matches!(error, GpuError::Lost(_)) {
         *kept = Some(error);
