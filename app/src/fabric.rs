@@ -3,7 +3,7 @@
 //! Yarn is laid when somebody first asks for it, once for all who share it. An edit is done when the stitches are changed, and
 //! shows at once; the thread of the document asks for the yarn after it has handed the stitches to the window.
 
-use sim_core::{Facts, Operation, RestShape, Simulator, Surgery, SurgeryError, carry_over};
+use sim_core::{Facts, Operation, RestShape, SimError, Simulation, Surgery, SurgeryError, carry_over};
 use std::sync::{Arc, LazyLock, OnceLock};
 use stitch_mesh::ids::{FaceId, NodeId};
 use stitch_mesh::lay::{lay, relay};
@@ -247,13 +247,16 @@ pub struct Moved {
 }
 
 impl Moved {
-    /// Where `simulator` has brought the yarn since it began with `from`.
-    pub fn by(simulator: &Simulator, from: &Arc<YarnNet>) -> Self {
-        Self {
+    /// Where `simulation` has brought the yarn since it began with `from`.
+    ///
+    /// # Errors
+    /// The GPU that it is on fails, and the CPU can't go on from there.
+    pub fn by(simulation: &mut Simulation, from: &Arc<YarnNet>) -> Result<Self, SimError> {
+        Ok(Self {
             from: Arc::clone(from),
-            net: Arc::clone(simulator.net()),
-            surgery: simulator.surgery().clone(),
-            state: Arc::new(simulator.state().clone()),
-        }
+            state: Arc::new(simulation.state()?.clone()),
+            net: Arc::clone(simulation.net()),
+            surgery: simulation.progress().surgery.clone(),
+        })
     }
 }

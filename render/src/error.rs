@@ -8,6 +8,12 @@ pub enum RenderError {
         "no graphics adapter found: install a Vulkan driver (on Debian, the package mesa-vulkan-drivers has a software one)"
     )]
     NoAdapter,
+    /// The only adapter speaks OpenGL.
+    #[error(
+        "the graphics adapter {0} has OpenGL alone, and Purlwise draws with Vulkan, Metal or Direct3D 12: install a Vulkan driver (on \
+         Debian, the package mesa-vulkan-drivers has a software one)"
+    )]
+    OpenGl(String),
     /// The adapter gave no device.
     #[error("the graphics adapter gave no device: {0}")]
     Device(#[from] wgpu::RequestDeviceError),

@@ -15,8 +15,19 @@ pub struct Gpu {
 
 impl Gpu {
     /// Wraps a device somebody else made, for example the one of a window.
-    pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        Self { device: device.clone(), queue: queue.clone(), adapter_info: adapter.get_info() }
+    ///
+    /// # Errors
+    /// It speaks OpenGL, in which shaders can't look up depths.
+    pub fn new(
+        adapter: &wgpu::Adapter,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<Self, RenderError> {
+        let adapter_info = adapter.get_info();
+        if adapter_info.backend == wgpu::Backend::Gl {
+            return Err(RenderError::OpenGl(adapter_info.name));
+        }
+        Ok(Self { device: device.clone(), queue: queue.clone(), adapter_info })
     }
 
     /// Opens the best adapter of the machine without a window; a software one will do.
@@ -34,7 +45,7 @@ impl Gpu {
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
-        Ok(Self::new(&adapter, &device, &queue))
+        Self::new(&adapter, &device, &queue)
     }
 
     /// Whether the processor itself does the drawing, so that frames must be cheap.

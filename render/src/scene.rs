@@ -7,7 +7,7 @@ use crate::damage::Damage;
 use crate::drawing::{Drawing, Faces, Lines};
 use crate::lines::LineMesh;
 use crate::surface::SurfaceMesh;
-use crate::yarn::YarnMesh;
+use crate::yarn::{LaidYarn, YarnMesh};
 use crate::{Bounds, Gpu, RenderError, Solids};
 
 /// What to draw, on the GPU.
@@ -101,6 +101,12 @@ impl Scene {
             self.damage = Damage::all();
         }
         self.yarn.set(gpu, yarn)
+    }
+
+    /// Draws from now on yarn that lies in buffers of the same device.
+    pub fn share_yarn(&mut self, yarn: LaidYarn) {
+        self.damage = Damage::all();
+        self.yarn.share(yarn);
     }
 
     /// The box around everything that casts a shadow, but the ground.

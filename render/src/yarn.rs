@@ -37,9 +37,42 @@ struct Stretch {
     roll: f32,
 }
 
+/// Yarn that lies in buffers of the device already, put there by whoever moves it.
+#[derive(Clone, Debug)]
+pub struct LaidYarn {
+    /// Control points as `yarn.wgsl` reads them, 32 bytes: position [m], length of yarn up to there in diameters, unit reference
+    /// normal, number of its stretch, and a bit more at the ends of open yarns.
+    pub points: wgpu::Buffer,
+    /// Radius [m] and roll [rad] of each stretch, 8 bytes.
+    pub stretches: wgpu::Buffer,
+    /// Colour from each control point to the next, as sRGB in the bytes of a number.
+    pub dyes: wgpu::Buffer,
+    /// Where it is.
+    pub runs: Vec<LaidRun>,
+}
+
+/// Some spans of yarn in a row.
+#[derive(Clone, Copy, Debug)]
+pub struct LaidRun {
+    /// The control point that the first begins at.
+    pub first: u32,
+    /// How many there are.
+    pub spans: u32,
+    /// A place that all their control points are within `far` of [m].
+    pub center: Vec3,
+    /// See `center`.
+    pub far: f32,
+    /// Mean length of a span [m].
+    pub span: f32,
+    /// Radius of the thickest yarn among them [m].
+    pub radius: f32,
+}
+
 /// Yarn on the GPU.
 #[derive(Debug)]
 pub(crate) struct YarnMesh {
+    /// Yarn that somebody else has put there, in place of the rest.
+    laid: Option<[wgpu::Buffer; 3]>,
     points: GrowingBuffer,
     /// Colour from each control point to the next, as sRGB in the bytes of a number.
     dyes: GrowingBuffer,
@@ -52,6 +85,7 @@ pub(crate) struct YarnMesh {
 impl YarnMesh {
     pub fn new() -> Self {
         Self {
+            laid: None,
             points: GrowingBuffer::new("yarn control points", wgpu::BufferUsages::STORAGE),
             dyes: GrowingBuffer::new("yarn colours", wgpu::BufferUsages::STORAGE),
             stretches: GrowingBuffer::new("stretches of yarn", wgpu::BufferUsages::STORAGE),
@@ -67,6 +101,7 @@ impl YarnMesh {
         let mut dyes: Vec<u32> = Vec::with_capacity(points.capacity());
         let mut stretches = Vec::with_capacity(yarn.curves.len());
         self.chunks.clear();
+        self.laid = None;
         for curve in &yarn.curves {
             let first = points.len() + 1;
             let roll = lay_out(curve, stretches.len() as u32, &mut points);
@@ -81,9 +116,7 @@ impl YarnMesh {
             let radii = curve.radii.chunk_by(|a, b| a == b);
             stretches.extend(radii.map(|equal| Stretch { radius: equal[0], roll }));
         }
-        self.bounds = Bounds::of(
-            self.chunks.iter().flat_map(|chunk| [chunk.center - chunk.reach, chunk.center + chunk.reach]),
-        );
+        self.bound();
         self.radius = yarn.curves.iter().map(YarnCurve::greatest_radius).fold(0.0, f32::max);
         let limits = gpu.device.limits();
         // The numbers of vertices must fit, too: five million control points.
@@ -98,6 +131,40 @@ impl YarnMesh {
             self.chunks.clear();
         }
         written
+    }
+
+    /// Draws from now on what is in buffers of the same device.
+    pub fn share(&mut self, yarn: LaidYarn) {
+        let chunk = |run: &LaidRun| Chunk {
+            first: run.first,
+            spans: run.spans,
+            center: run.center,
+            reach: reach(run.far, run.radius, run.span),
+            radius: run.radius,
+            span: run.span,
+        };
+        self.chunks = yarn.runs.iter().map(chunk).collect();
+        self.bound();
+        self.radius = yarn.runs.iter().map(|run| run.radius).fold(0.0, f32::max);
+        self.laid = Some([yarn.points, yarn.stretches, yarn.dyes]);
+    }
+
+    fn bound(&mut self) {
+        self.bounds = Bounds::of(
+            self.chunks.iter().flat_map(|chunk| [chunk.center - chunk.reach, chunk.center + chunk.reach]),
+        );
+    }
+
+    /// Its control points, stretches and colours.
+    fn buffers(&self) -> Option<[&wgpu::Buffer; 3]> {
+        match &self.laid {
+            Some([points, stretches, dyes]) => Some([points, stretches, dyes]),
+            None => {
+                let [points, stretches, dyes] =
+                    [&self.points, &self.stretches, &self.dyes].map(GrowingBuffer::buffer);
+                Some([points?, stretches?, dyes?])
+            }
+        }
     }
 
     /// A box around it.
@@ -121,16 +188,21 @@ fn chunks(points: &[ControlPoint], first: usize, radius: f32) -> impl Iterator<I
         let count = run.len() - 1;
         let span = length / count as f32;
         let far = run.iter().map(|p| p.position.distance(center)).fold(0.0, f32::max);
-        // Between its points the spline bulges, by less than half a span in any sane curve.
         Chunk {
             first: (first + start) as u32,
             spans: count as u32,
             center,
-            reach: far + radius + 0.5 * span,
+            reach: reach(far, radius, span),
             radius,
             span,
         }
     })
+}
+
+/// How far yarn goes from a place that its control points are within `far` of: between them the spline bulges, by less than half
+/// a span in any sane curve [m].
+fn reach(far: f32, radius: f32, span: f32) -> f32 {
+    far + radius + 0.5 * span
 }
 
 /// The pipelines that draw it, and the triangles of all levels.
@@ -253,12 +325,8 @@ impl YarnPipelines {
         mesh: &YarnMesh,
         batches: &[Batch],
     ) {
-        let buffers = [&mesh.points, &mesh.stretches, &mesh.dyes].map(GrowingBuffer::buffer);
-        let [Some(points), Some(stretches), Some(dyes)] = buffers else { return };
-        if batches.is_empty() {
-            return;
-        }
-        let buffers = [points, stretches, dyes].map(wgpu::Buffer::as_entire_binding);
+        let Some(buffers) = mesh.buffers().filter(|_| !batches.is_empty()) else { return };
+        let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &bind_group(&gpu.device, &self.layout, buffers.to_vec()), &[]);
         pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);

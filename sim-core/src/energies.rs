@@ -70,4 +70,10 @@ impl Model {
         };
         self.segments.iter().map(of).sum()
     }
+
+    /// Root-mean-square speed of the yarn [m/s].
+    pub(crate) fn speed(&self, materials: &Materials, state: &YarnState) -> f64 {
+        let mass: f64 = self.node_masses(materials).iter().sum();
+        (2.0 * self.kinetic_energy(materials, state) / mass).sqrt()
+    }
 }

@@ -29,31 +29,40 @@ pub struct HoldFact {
     pub force_n: DVec3,
 }
 
-impl Simulator {
-    /// The forces of pins, clamps and bodies on the fabric.
-    pub fn forces(&self) -> Forces {
-        let Scene { pins, clamps, bodies, .. } = self.scene();
-        let position = &self.state().position;
-        let of_clamp = |clamp: &Clamp| {
-            clamp.pins(self.scene_time_s()).map(|pin| pin.force(position[pin.node as usize])).sum()
-        };
-        let mut by_bodies = self.body_forces().to_vec();
-        by_bodies.resize(bodies.len(), DVec3::ZERO); // before the first step, and where bodies came since
-        Forces {
-            pins: pins.iter().map(|pin| pin.force(position[pin.node as usize])).collect(),
-            clamps: clamps.iter().map(of_clamp).collect(),
-            bodies: by_bodies,
+impl Forces {
+    /// Those of pins and clamps, `time_s` after the scene began [s], on nodes at `position` [node_count] [m].
+    pub(crate) fn of_springs(scene: &Scene, position: &[DVec3], time_s: f64) -> Self {
+        let of_clamp =
+            |clamp: &Clamp| clamp.pins(time_s).map(|pin| pin.force(position[pin.node as usize])).sum();
+        Self {
+            pins: scene.pins.iter().map(|pin| pin.force(position[pin.node as usize])).collect(),
+            clamps: scene.clamps.iter().map(of_clamp).collect(),
+            bodies: Vec::new(),
         }
     }
 
     /// The same in words; all pins as one.
-    pub fn holds(&self) -> Vec<HoldFact> {
-        let (scene, forces) = (self.scene(), self.forces());
-        let pins = (!scene.pins.is_empty()).then(|| ("pins".to_owned(), forces.pins.iter().sum::<DVec3>()));
-        let clamps = scene.clamps.iter().zip(forces.clamps).map(|(c, f)| (c.name.clone(), f));
-        let bodies = scene.bodies.iter().zip(forces.bodies).enumerate();
+    pub(crate) fn in_words(self, scene: &Scene) -> Vec<HoldFact> {
+        let pins = (!scene.pins.is_empty()).then(|| ("pins".to_owned(), self.pins.iter().sum::<DVec3>()));
+        let clamps = scene.clamps.iter().zip(self.clamps).map(|(c, f)| (c.name.clone(), f));
+        let bodies = scene.bodies.iter().zip(self.bodies).enumerate();
         let bodies = bodies.map(|(i, (b, f))| (format!("{} {i}", b.kind()), f));
         let all = pins.into_iter().chain(clamps).chain(bodies);
         all.map(|(what, force_n)| HoldFact { what, force_n }).collect()
+    }
+}
+
+impl Simulator {
+    /// The forces of pins, clamps and bodies on the fabric.
+    pub fn forces(&self) -> Forces {
+        let mut bodies = self.body_forces().to_vec();
+        bodies.resize(self.scene().bodies.len(), DVec3::ZERO); // before the first step, and where bodies came since
+        let springs = Forces::of_springs(self.scene(), &self.state().position, self.scene_time_s());
+        Forces { bodies, ..springs }
+    }
+
+    /// The same in words; all pins as one.
+    pub fn holds(&self) -> Vec<HoldFact> {
+        self.forces().in_words(self.scene())
     }
 }

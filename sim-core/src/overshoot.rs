@@ -21,7 +21,7 @@ use crate::model::Model;
 use glam::DVec3;
 use stitch_mesh::yarn_net::YarnState;
 
-/// Excess of length that stays, relative to the length.
+/// Excess of length that stays, relative to the length. Down to it the rest is drawn back, so that nothing jumps there.
 pub(crate) const LEFT: f64 = 2e-3;
 
 /// Sweeps over all segments at most.
@@ -42,7 +42,7 @@ pub(crate) fn draw_back(model: &Model, masses: &[f64], state: &YarnState, next: 
         let r = state.position[b] - state.position[a];
         let moved = next.position[b] - next.position[a] - r;
         let length = r.length();
-        (length + r.dot(moved) / length).max(LEAST * length)
+        (1.0 + LEFT) * (length + r.dot(moved) / length).max(LEAST * length)
     };
     let ends = |i: usize| model.segments[i].stencil.nodes.map(|n| n.index());
     let reckoned: Vec<f64> = (0..model.segments.len()).map(|i| reckoned(ends(i))).collect();
@@ -54,7 +54,7 @@ pub(crate) fn draw_back(model: &Model, masses: &[f64], state: &YarnState, next: 
             let [a, b] = ends(i);
             let r = next.position[b] + shift[b] - next.position[a] - shift[a];
             let length = r.length();
-            if length > (1.0 + LEFT) * reckoned {
+            if length > *reckoned {
                 drawn = true;
                 let by = PART * (length - reckoned) / length / (masses[a] + masses[b]) * r;
                 add[a] += masses[b] * by;

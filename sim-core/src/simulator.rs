@@ -5,13 +5,15 @@ use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
 use crate::gpu::GpuError;
+use crate::handover::Handover;
 use crate::local::LEAST_LENGTH;
 use crate::material::MaterialError;
 use crate::materials::Materials;
 use crate::model::{Model, NetError};
-use crate::noise::unit_hash;
+use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
-use crate::solver::{Method, Solver};
+use crate::settle::{SettleGoal, SettleProgress, Settled, Settles, settle};
+use crate::solver::Method;
 use crate::step::{Rejection, Stepper, Stuck};
 use crate::surgery::slip::slipped;
 use crate::surgery::{self, Operation, Surgery, SurgeryError};
@@ -22,19 +24,12 @@ use std::sync::Arc;
 use stitch_mesh::ids::{NodeId, VisitId};
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
-/// Noise on the positions at the start [m]. A flat fabric is an exact saddle: without noise it never curls, and which way
-/// it curls would hang on rounding.
-pub(crate) const NOISE: f64 = 1e-6;
-
 /// Halvings of the time step before a simulation is given up; the last is a thousandth of the first.
 pub(crate) const MOST_HALVINGS: i32 = 10;
 
 /// Growth of the time step from step to step after it had to be halved. What made one fail lasts for a few: of a thousand random
 /// swatches 2.1 steps in a hundred were taken again with 2.
 pub(crate) const GROWTH: f64 = 1.4;
-
-/// Steps between two looks at the kinetic energy while settling.
-const SETTLE_INTERVAL: u64 = 10;
 
 /// Why there is no simulation, or no further step of it.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -98,36 +93,7 @@ pub struct StepReport {
     pub rejected: u64,
 }
 
-/// How far settling has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SettleProgress {
-    /// Simulated time since the start [s].
-    pub time_s: f64,
-    /// Root-mean-square speed of the yarn [m/s].
-    pub speed: f64,
-}
-
-/// When a fabric counts as settled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SettleGoal {
-    /// Root-mean-square speed of the yarn to come under [m/s].
-    pub speed: f64,
-    /// Simulated time after which to stop anyway [s].
-    pub time_limit_s: f64,
-}
-
-/// How settling ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Settled {
-    /// The fabric is as good as still.
-    Still,
-    /// The time limit came first.
-    TimeLimit,
-    /// The caller stopped it.
-    Interrupted,
-}
-
-/// A running simulation. Owns all that it needs.
+/// A simulation on the CPU. Owns all that it needs.
 pub struct Simulator {
     stepper: Stepper,
     take_in: TakeIn,
@@ -136,12 +102,7 @@ pub struct Simulator {
     now: Stuck,
     /// Step to try next [s].
     step: f64,
-    time: f64,
-    /// Time since the scene began [s].
-    scene_time: f64,
-    steps: u64,
-    rejected: u64,
-    surgery: Surgery,
+    progress: Progress,
     /// None where the faster one is chosen.
     method: Option<Method>,
 }
@@ -152,36 +113,30 @@ impl Simulator {
         net: &Arc<YarnNet>,
         materials: impl Into<Materials>,
         scene: Scene,
-        mut state: YarnState,
+        state: YarnState,
     ) -> Result<Self, SimError> {
-        let materials = materials.into();
-        materials.validate()?;
-        scene.validate(net.nodes.len())?;
-        let mut model = Model::new(Arc::clone(net))?;
-        let take_in = TakeIn::new(net);
-        take_in.shorten_turns(&mut model, state.taken_in);
-        check_state(&model, &state)?;
-        for (i, x) in state.position.iter_mut().enumerate() {
-            let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
-            *x += DVec3::new(noise(0), noise(1), noise(2));
-        }
-        let stepper = Stepper::new(model, &materials, None);
+        Ok(Self::resume(Handover::new(net, materials, scene, state)?, None))
+    }
+
+    /// Goes on with what another simulation has come to, solved by `method` or by the faster one.
+    pub(crate) fn resume(from: Handover, method: Option<Method>) -> Self {
+        let Handover { model, take_in, materials, scene, state, progress } = from;
+        let stepper = Stepper::new(model, &materials, method);
         let anchors = Anchors::at(&stepper.stacks, &state.sliding);
         let step = scene.time_step;
-        Ok(Self {
-            stepper,
-            take_in,
-            materials,
-            scene,
-            now: Stuck { state, anchors },
-            step,
-            time: 0.0,
-            scene_time: 0.0,
-            steps: 0,
-            rejected: 0,
-            surgery: Surgery::default(),
-            method: None,
-        })
+        Self { stepper, take_in, materials, scene, now: Stuck { state, anchors }, step, progress, method }
+    }
+
+    /// What another solver can go on with.
+    pub(crate) fn handover(&self) -> Handover {
+        Handover {
+            model: self.stepper.model.clone(),
+            take_in: self.take_in.clone(),
+            materials: self.materials.clone(),
+            scene: self.scene.clone(),
+            state: self.now.state.clone(),
+            progress: self.progress.clone(),
+        }
     }
 
     /// Goes on by one step: of the scene's time step, or less where that goes wrong. After an error the state is
@@ -193,13 +148,11 @@ impl Simulator {
         let Stepper { model, stacks, .. } = &mut self.stepper;
         self.take_in.step(model, state, (stacks, anchors), self.step);
         loop {
-            match self.stepper.step(&self.now, &self.scene, self.scene_time, self.step) {
+            match self.stepper.step(&self.now, &self.scene, self.progress.scene_time_s, self.step) {
                 Ok(next) => {
                     self.now = next;
                     let report = StepReport { time_step: self.step, rejected };
-                    self.time += self.step;
-                    self.scene_time += self.step;
-                    self.steps += 1;
+                    self.progress.add(self.step);
                     self.step = self.scene.time_step.min(GROWTH * self.step);
                     while let Some(operation) = slipped(self.net(), self.state(), &self.materials) {
                         self.operate(operation)?;
@@ -208,12 +161,12 @@ impl Simulator {
                 }
                 Err(cause) => {
                     rejected += 1;
-                    self.rejected += 1;
-                    tracing::debug!(time_s = self.time, step_s = self.step, %cause, "step rejected");
+                    self.progress.rejected += 1;
+                    tracing::debug!(time_s = self.progress.time_s, step_s = self.step, %cause, "step rejected");
                     if self.step <= smallest {
                         let step_s = self.step;
                         self.step = self.scene.time_step;
-                        return Err(SimError::Stuck { time_s: self.time, step_s, cause });
+                        return Err(SimError::Stuck { time_s: self.progress.time_s, step_s, cause });
                     }
                     self.step *= 0.5;
                 }
@@ -227,7 +180,7 @@ impl Simulator {
         let model = model_after(self.net(), Arc::new(done.net), &done.state, &done.was)?;
         let stepper = Stepper::new(model, &self.materials, self.method);
         let anchors = self.now.anchors.carried(&stepper.stacks, &done.was, &done.state.sliding);
-        self.surgery.add(operation, self.state().taken_in);
+        self.progress.surgery.add(operation, self.state().taken_in);
         self.stepper = stepper;
         self.take_in = TakeIn::default();
         self.now = Stuck { state: done.state, anchors };
@@ -237,7 +190,7 @@ impl Simulator {
 
     /// What has been done to the net, and has happened to it, since this simulation began.
     pub fn surgery(&self) -> &Surgery {
-        &self.surgery
+        &self.progress.surgery
     }
 
     /// Steps until the fabric is as good as still, the time limit, or until `progress` breaks off.
@@ -246,24 +199,7 @@ impl Simulator {
         goal: SettleGoal,
         progress: &mut dyn FnMut(SettleProgress) -> ControlFlow<()>,
     ) -> Result<Settled, SimError> {
-        let start = self.time;
-        let mass: f64 = self.stepper.model.node_masses(&self.materials).iter().sum();
-        loop {
-            self.step()?;
-            let time_s = self.time - start;
-            if self.steps.is_multiple_of(SETTLE_INTERVAL) {
-                let speed = (2.0 * self.kinetic_energy() / mass).sqrt();
-                if progress(SettleProgress { time_s, speed }).is_break() {
-                    return Ok(Settled::Interrupted);
-                }
-                if speed < goal.speed {
-                    return Ok(Settled::Still);
-                }
-            }
-            if time_s >= goal.time_limit_s {
-                return Ok(Settled::TimeLimit);
-            }
-        }
+        settle(self, goal, progress)
     }
 
     /// The net.
@@ -291,19 +227,24 @@ impl Simulator {
         &self.scene
     }
 
+    /// How far it has come.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
     /// Simulated time [s].
     pub fn time_s(&self) -> f64 {
-        self.time
+        self.progress.time_s
     }
 
     /// Time since the scene began, by which bodies and clamps move [s].
     pub fn scene_time_s(&self) -> f64 {
-        self.scene_time
+        self.progress.scene_time_s
     }
 
     /// Goes on at a time of the scene: for a fabric that was edited while things moved [s].
     pub fn resume_at(&mut self, scene_time_s: f64) {
-        self.scene_time = scene_time_s;
+        self.progress.scene_time_s = scene_time_s;
     }
 
     /// Force of each body of the last step's scene on the fabric; none before the first step [N].
@@ -317,7 +258,7 @@ impl Simulator {
         scene.validate(self.net().nodes.len())?;
         self.step = scene.time_step;
         if !scene.moves_like(&self.scene) {
-            self.scene_time = 0.0;
+            self.progress.scene_time_s = 0.0;
         }
         self.scene = scene;
         Ok(())
@@ -347,13 +288,6 @@ impl Simulator {
         self.stepper.model.kinetic_energy(&self.materials, self.state())
     }
 
-    /// Solves the systems of its steps by `method`, whatever the size of the fabric; by the faster one again with none.
-    pub fn set_method(&mut self, method: Option<Method>) {
-        let Stepper { model, system, solver, .. } = &mut self.stepper;
-        *solver = Solver::new(model, &system.matrix, method);
-        self.method = method;
-    }
-
     /// How the systems of its steps are solved.
     pub fn method(&self) -> Method {
         self.stepper.solver.method()
@@ -378,18 +312,32 @@ impl Simulator {
     pub fn facts(&self) -> Facts {
         Facts {
             solver: "cpu".to_owned(),
-            steps: self.steps,
-            time_s: self.time,
+            steps: self.progress.steps,
+            time_s: self.progress.time_s,
             kinetic_j: self.kinetic_energy(),
             holds: self.holds(),
-            rejected_steps: self.rejected,
+            rejected_steps: self.progress.rejected,
             ..facts::measure(
                 &self.stepper.model,
                 &self.materials,
-                (&self.scene, self.scene_time),
+                (&self.scene, self.progress.scene_time_s),
                 self.state(),
             )
         }
+    }
+}
+
+impl Settles for Simulator {
+    fn step(&mut self) -> Result<StepReport, SimError> {
+        self.step()
+    }
+
+    fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    fn speed(&mut self) -> Result<f64, SimError> {
+        Ok(self.stepper.model.speed(&self.materials, self.state()))
     }
 }
 

@@ -16,7 +16,7 @@ use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// How long taking in takes [s].
-pub(crate) const TIME: f64 = 0.4;
+const TIME: f64 = 0.4;
 
 /// What is taken in of a net.
 #[derive(Clone, Debug, Default)]
@@ -97,6 +97,11 @@ impl TakeIn {
         Some(settled)
     }
 
+    /// Whether there is no more to take in once `part` of it all has been.
+    pub fn is_over(&self, part: f64) -> bool {
+        self.total.is_empty() || part >= 1.0
+    }
+
     /// Takes in as much as a step of `h` [s] does, and moves the anchors of friction along.
     pub fn step(
         &self,
@@ -105,10 +110,10 @@ impl TakeIn {
         (stacks, anchors): (&[Stack], &mut Anchors),
         h: f64,
     ) {
-        let part = (h / TIME).min(1.0 - state.taken_in);
-        if self.total.is_empty() || part <= 0.0 {
+        if self.is_over(state.taken_in) {
             return;
         }
+        let part = (h / TIME).min(1.0 - state.taken_in);
         let shift = self.shifts(&model.net, state, part);
         for (u, shift) in state.sliding.iter_mut().zip(&shift) {
             *u += shift;

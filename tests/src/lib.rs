@@ -63,6 +63,7 @@ pub fn gpu() -> &'static Gpu {
 pub struct Program {
     program: &'static str,
     folder: tempfile::TempDir,
+    variables: Vec<(&'static str, &'static str)>,
 }
 
 /// What one run of the program came to.
@@ -79,7 +80,12 @@ pub struct Run {
 impl Program {
     /// The program at a path, which only the suites themselves know: `env!("CARGO_BIN_EXE_purlwise-tested")`.
     pub fn new(program: &'static str) -> Self {
-        Self { program, folder: tempfile::tempdir().unwrap() }
+        Self { program, folder: tempfile::tempdir().unwrap(), variables: Vec::new() }
+    }
+
+    /// Sets a variable of the environment for all runs from now on.
+    pub fn set(&mut self, name: &'static str, value: &'static str) {
+        self.variables.push((name, value));
     }
 
     /// A file in the folder.
@@ -99,8 +105,9 @@ impl Program {
 
     /// Runs the program in the folder.
     pub fn run(&self, arguments: &[&str]) -> Run {
-        let output =
-            Command::new(self.program).args(arguments).current_dir(self.folder.path()).output().unwrap();
+        let mut command = Command::new(self.program);
+        command.args(arguments).current_dir(self.folder.path()).envs(self.variables.iter().copied());
+        let output = command.output().unwrap();
         let text = |bytes| String::from_utf8(bytes).unwrap();
         Run { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
     }

@@ -51,7 +51,7 @@ impl Window {
     /// Opens it on a project.
     pub fn new(project: Project) -> Self {
         let painter = create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
-        let gpu = Gpu::new(&painter.adapter, &painter.device, &painter.queue);
+        let gpu = Gpu::new(&painter.adapter, &painter.device, &painter.queue).unwrap();
         let screen = Screen::new(gpu.clone(), painter.renderer.clone()).unwrap();
         let editor = Editor::new(project, None, Some(screen), || ()).unwrap();
         let harness = Harness::builder()

@@ -138,3 +138,12 @@ fn wrong_usage_is_told_apart() {
         assert!(run.stderr.contains(says), "{}", run.stderr);
     }
 }
+
+#[test]
+fn a_machine_that_cannot_draw_is_told_what_it_lacks() {
+    let mut program = program();
+    program.set("WGPU_BACKEND", "gl");
+    // With OpenGL alone, or without that.
+    fails(&program, &["render", "good.purl", "-o", "out.png"], &["graphics adapter", "mesa-vulkan-drivers"]);
+    assert!(!program.path("out.png").exists());
+}

@@ -99,8 +99,8 @@ enum Verb {
         /// Simulated time
         #[arg(long, default_value_t = 1.0)]
         seconds: f64,
-        /// Where to compute
-        #[arg(long, value_enum, default_value = "cpu")]
+        /// What to solve with
+        #[arg(long, value_enum, default_value = "auto")]
         solver: Solver,
         /// Folder for one picture every 1/30 s
         #[arg(long)]
@@ -220,6 +220,9 @@ enum Verb {
         /// For scale: leave out what has more loops
         #[arg(long, default_value_t = 60_000)]
         most_loops: usize,
+        /// What to solve with; steps compares the direct and the iterative one if absent
+        #[arg(long, value_enum)]
+        solver: Option<Solver>,
         #[command(flatten)]
         print: Output,
     },
@@ -370,7 +373,7 @@ fn run(arguments: Arguments) -> Result<()> {
             files::write_png(&output, &pictures)
         }
         Verb::Chart { project, output, rows, print } => chart::run(&project, &output, rows, print),
-        Verb::Bench { suite, most_loops, print } => bench::run(suite, most_loops, print),
+        Verb::Bench { suite, most_loops, solver, print } => bench::run(suite, most_loops, solver, print),
         Verb::Lab { experiment, out, options, print } => lab::run(experiment, &options, &out, print),
         Verb::Inspect { project, print } => report(&Project::open(&project)?, print),
     }

@@ -1,6 +1,7 @@
 //! Values that options take.
 
 use clap::ValueEnum;
+use sim_core::SolverChoice;
 use stitch_mesh::obj::Unit;
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -11,11 +12,30 @@ pub enum RelaxStage {
     Contact,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Solver {
+    /// The fastest for the fabric on this machine
+    Auto,
+    /// The faster one on the CPU
     Cpu,
-    /// The GPU, and the CPU once that fails
+    /// A complete factorisation, on the CPU
+    Direct,
+    /// Conjugate gradients, on the CPU
+    Iterative,
+    /// Conjugate gradients on the GPU, and on the CPU once that fails
     Gpu,
+}
+
+impl From<Solver> for SolverChoice {
+    fn from(solver: Solver) -> Self {
+        match solver {
+            Solver::Auto => Self::Auto,
+            Solver::Cpu => Self::Cpu,
+            Solver::Direct => Self::Direct,
+            Solver::Iterative => Self::Iterative,
+            Solver::Gpu => Self::Gpu,
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]

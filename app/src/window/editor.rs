@@ -19,7 +19,7 @@ use crate::project::Project;
 use anyhow::Result;
 use glam::{DVec3, Vec3};
 use render::{Bounds, Camera, Faces, Lines, NamedView};
-use sim_core::{Materials, Pin, Scene, SimCommand, SimThread, Snapshot};
+use sim_core::{Materials, Pin, Scene, SharedGpu, SimCommand, SimThread, Snapshot, SolverChoice};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,6 +33,8 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 pub struct Editor {
     pub(super) session: Session,
     pub(super) sim: SimThread,
+    /// What the simulation is to be solved with.
+    pub(super) solver: SolverChoice,
     pub(super) screen: Option<Screen>,
     pub(super) view: Arc<View>,
     /// Facts about the view, or about the one before while those are found.
@@ -100,8 +102,10 @@ impl Editor {
         };
         let session = Session::spawn(project, path, Arc::new(wake.clone()))?;
         let (view, survey) = (session.latest(), session.survey());
+        let gpu = screen.as_ref().map_or_else(SharedGpu::default, Screen::shared_gpu);
         Ok(Self {
-            sim: SimThread::spawn(Box::new(wake))?,
+            sim: SimThread::spawn(gpu, Box::new(wake))?,
+            solver: SolverChoice::default(),
             panel: panels::State::of(&view),
             session,
             screen,
@@ -183,7 +187,7 @@ impl Editor {
 
     /// Sends a request, with the yarn as it is just now.
     pub(super) fn request(&mut self, request: Request) {
-        let moved = self.snapshot.as_ref().filter(|s| s.time_s > 0.0);
+        let moved = self.snapshot.as_ref().filter(|s| s.moved);
         let yarn = moved.zip(self.loaded.as_ref()).map(|(s, from)| Moved {
             from: Arc::clone(from),
             net: Arc::clone(&s.net),
@@ -200,6 +204,11 @@ impl Editor {
     pub(super) fn set_playing(&mut self, playing: bool) {
         self.playing = playing;
         self.sim.send(if playing { SimCommand::Play } else { SimCommand::Pause });
+    }
+
+    pub(super) fn solve_with(&mut self, solver: SolverChoice) {
+        self.solver = solver;
+        self.sim.send(SimCommand::SetSolver(solver));
     }
 
     /// Goes to another stage; what is in the hand is put down.

@@ -183,7 +183,7 @@ impl Shown {
             window.theme(),
             Some(device.limits().max_texture_dimension_2d as usize),
         );
-        let screen = Screen::new(Gpu::new(&adapter, &device, &queue), painter.clone())?;
+        let screen = Screen::new(Gpu::new(&adapter, &device, &queue)?, painter.clone())?;
         let wake = move || {
             // The loop is gone only when the program ends.
             let _ = proxy.send_event(Wake);

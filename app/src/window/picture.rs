@@ -52,7 +52,12 @@ impl Editor {
                 drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f)).unwrap_or_default()
             }
         };
-        let shown = self.screen.as_mut().map(|screen| screen.set(&drawing));
+        let snapshot = self.snapshot.clone().filter(|s| stage == Stage::Yarn && s.on_device.is_some());
+        let shown = self.screen.as_mut().map(|screen| {
+            screen.set(&drawing)?;
+            // Yarn that is on the device has no curves.
+            snapshot.map_or(Ok(()), |snapshot| screen.set_yarn(&snapshot))
+        });
         self.report(shown);
         self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
     }
@@ -91,7 +96,7 @@ impl Editor {
     /// Puts yarn that has moved on the screen.
     pub(super) fn show_yarn(&mut self) {
         let Some(snapshot) = self.snapshot.clone() else { return };
-        let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&snapshot.curves));
+        let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&snapshot));
         self.report(shown);
         if self.view.project.scene.bodies.iter().any(|b| b.motion().is_some()) {
             let solids = self.solids_now();

@@ -3,9 +3,11 @@
 use anyhow::Result;
 use egui_wgpu::Renderer as Painter;
 use egui_wgpu::wgpu::FilterMode;
-use render::{Camera, Drawing, Faces, Gpu, Lines, Quality, Renderer, Scene, Solids, Viewport};
+use render::{
+    Camera, Drawing, Faces, Gpu, LaidRun, LaidYarn, Lines, Quality, Renderer, Scene, Solids, Viewport,
+};
+use sim_core::{DeviceYarn, SharedGpu, Snapshot, YarnRun};
 use std::sync::Arc;
-use stitch_mesh::yarn_curves::YarnCurves;
 
 /// egui's painter, which holds the textures that egui can show.
 pub type SharedPainter = Arc<egui::mutex::RwLock<Painter>>;
@@ -33,6 +35,11 @@ impl Screen {
         let texture =
             painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
         Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture, drawn: None })
+    }
+
+    /// The device of the screen, to simulate on.
+    pub fn shared_gpu(&self) -> SharedGpu {
+        SharedGpu::of(&self.gpu.adapter_info, &self.gpu.device, &self.gpu.queue)
     }
 
     /// Replaces all that is shown.
@@ -68,8 +75,12 @@ impl Screen {
     ///
     /// # Errors
     /// As [`Self::set`].
-    pub fn set_yarn(&mut self, yarn: &YarnCurves) -> Result<()> {
-        Ok(self.scene.set_yarn(&self.gpu, yarn)?)
+    pub fn set_yarn(&mut self, snapshot: &Snapshot) -> Result<()> {
+        match &snapshot.on_device {
+            Some(yarn) => self.scene.share_yarn(laid(yarn)),
+            None => self.scene.set_yarn(&self.gpu, &snapshot.curves)?,
+        }
+        Ok(())
     }
 
     /// Replaces the bodies only.
@@ -110,4 +121,14 @@ impl Screen {
         }
         Ok(self.texture)
     }
+}
+
+/// Yarn on the device as the renderer knows it.
+pub fn laid(yarn: &DeviceYarn) -> LaidYarn {
+    let run = |run: &YarnRun| {
+        let YarnRun { first, spans, center, far, span, radius } = *run;
+        LaidRun { first, spans, center, far, span, radius }
+    };
+    let DeviceYarn { points, stretches, dyes, runs } = yarn.clone();
+    LaidYarn { points, stretches, dyes, runs: runs.iter().map(run).collect() }
 }

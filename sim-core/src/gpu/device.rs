@@ -34,6 +34,8 @@ pub struct GpuDevice {
     pub(crate) queue: wgpu::Queue,
     /// Name, backend and kind of the adapter.
     pub adapter: wgpu::AdapterInfo,
+    /// Whether somebody else draws on it.
+    pub(crate) draws: bool,
     /// What went wrong first.
     failure: Arc<Mutex<Option<GpuError>>>,
     /// Compiled when they are first needed, once for all simulations.
@@ -61,6 +63,22 @@ impl GpuDevice {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| GpuError::NoDevice(error.to_string()))?;
+        Ok(Self { draws: false, ..Self::of(adapter.get_info(), &device, &queue)? })
+    }
+
+    /// Simulates on a device that somebody else made and draws on. What goes wrong on it is taken down
+    /// here from now on.
+    ///
+    /// # Errors
+    /// Its limits are lower than those of every WebGPU device.
+    pub fn of(
+        adapter: wgpu::AdapterInfo,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<Self, GpuError> {
+        if !LIMITS.check_limits(&device.limits()) {
+            return Err(GpuError::NoDevice("its limits are too low for compute shaders".to_owned()));
+        }
         let failure = Arc::new(Mutex::new(None));
         let failed = Arc::clone(&failure);
         device.set_device_lost_callback(move |_, message| keep(&failed, GpuError::Lost(message)));
@@ -72,7 +90,13 @@ impl GpuDevice {
             };
             keep(&failed, error);
         }));
-        Ok(Self { device, queue, adapter: adapter.get_info(), failure, kernels: Arc::default() })
+        let (device, queue) = (device.clone(), queue.clone());
+        Ok(Self { device, queue, adapter, draws: true, failure, kernels: Arc::default() })
+    }
+
+    /// Whether the processor itself does the work, which it can do better without the detour.
+    pub fn is_software(&self) -> bool {
+        self.adapter.device_type == wgpu::DeviceType::Cpu
     }
 
     /// The kernels, compiled.
@@ -86,12 +110,16 @@ impl GpuDevice {
         self.device.destroy();
     }
 
-    /// Whether nothing has gone wrong so far.
+    /// Whether nothing has gone wrong since this was last asked. A lost device stays lost.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         // A lost device first refuses everything, and then says why.
         let _ = self.device.poll(wgpu::PollType::Poll);
-        match &*self.failure.lock().unwrap_or_else(PoisonError::into_inner) {
-            Some(error) => Err(error.clone()),
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        match failure.take() {
+            Some(error) => {
+                *failure = Some(error.clone()).filter(|e| matches!(e, GpuError::Lost(_)));
+                Err(error)
+            }
             None => Ok(()),
         }
     }
@@ -164,7 +192,11 @@ pub(crate) const LIMITS: wgpu::Limits = wgpu::Limits::defaults();
 
 /// Keeps the first failure, or the loss of the device, from which the others follow.
 fn keep(failure: &Mutex<Option<GpuError>>, error: GpuError) {
-    tracing::debug!(%error, "gpu");
+    match &error {
+        // A mistake in this program, perhaps in what else it does with the device.
+        GpuError::Refused(_) => tracing::error!(%error),
+        _ => tracing::warn!(%error),
+    }
     let mut kept = failure.lock().unwrap_or_else(PoisonError::into_inner);
     if kept.is_none() || matches!(error, GpuError::Lost(_)) {
         *kept = Some(error);

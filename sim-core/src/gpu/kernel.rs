@@ -42,9 +42,14 @@ pub(crate) const SOURCES: &[Source] = &[
         &["held_span", "translate_span", "translate", "settle"],
     ),
     ("advance", include_str!("kernels/advance.wgsl"), &["advance"]),
+    ("overshoot", include_str!("kernels/overshoot.wgsl"), &["draw_back", "come_back"]),
     ("judge", include_str!("kernels/judge.wgsl"), &["judge"]),
     ("commit", include_str!("kernels/commit.wgsl"), &["commit"]),
     ("points", include_str!("kernels/points.wgsl"), &["lay_points", "lay_middles"]),
+    ("drawn", include_str!("kernels/drawn.wgsl"), &["lay_out"]),
+    ("frame", include_str!("kernels/frame.wgsl"), &["frame"]),
+    ("roll", include_str!("kernels/roll.wgsl"), &["roll"]),
+    ("bound", include_str!("kernels/bound.wgsl"), &["bound"]),
 ];
 
 /// A binding of a kernel file.

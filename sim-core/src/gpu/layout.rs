@@ -3,7 +3,7 @@
 //! A record is declared in Rust and its WGSL text generated from the declaration. All fields are `f32` or `u32`, so both
 //! sides agree on every offset, in uniforms and in arrays alike. A test parses what is generated and compares.
 
-use crate::{air, bend, friction, layers, local, mass, shear, surroundings};
+use crate::{air, bend, friction, layers, local, mass, overshoot, shear, step, surroundings};
 use std::fmt::Write as _;
 
 /// Declares records of words.
@@ -272,6 +272,36 @@ records! {
         omega_x: f32, omega_y: f32, omega_z: f32,
         kept_x: f32, kept_y: f32, kept_z: f32,
     }
+    /// What a control point of drawn yarn is made from; see `drawn.rs`.
+    Lay {
+        /// Its place among the points of visits and stitch contacts, and those before and after it on the yarn.
+        point: u32,
+        before: u32, after: u32,
+        /// The entry whose other side this lies on.
+        mirror: u32,
+        /// What moves it along, and turns it.
+        visit: u32,
+        node: u32,
+        /// Yarn up to it where nothing has slid [diameters], and the diameter [m].
+        arc: f32,
+        diameter: f32,
+        /// 0 where it only helps its neighbours.
+        inner: u32,
+        mark: u32,
+    }
+    /// A control point of drawn yarn, as `render` reads it.
+    Drawn {
+        x: f32, y: f32, z: f32,
+        arc: f32,
+        normal_x: f32, normal_y: f32, normal_z: f32,
+        stretch: u32,
+    }
+    /// Where a run of drawn yarn is.
+    Bound {
+        x: f32, y: f32, z: f32,
+        far: f32,
+        span: f32,
+    }
     /// Two nodes of different layers that press each other, seen from one.
     Contact {
         node: u32,
@@ -342,7 +372,7 @@ pub(crate) fn prelude() -> String {
 }
 
 /// Constants of the physics.
-fn floats() -> [(&'static str, f64); 11] {
+fn floats() -> [(&'static str, f64); 15] {
     [
         ("LEAST_LENGTH", local::LEAST_LENGTH),
         ("BEND_JAM_FACTOR", bend::JAM_FACTOR),
@@ -351,6 +381,10 @@ fn floats() -> [(&'static str, f64); 11] {
         ("BODY_STIFFNESS", surroundings::BODY_STIFFNESS),
         ("NEAREST", layers::NEAREST),
         ("FARTHEST", layers::FARTHEST),
+        ("LEAP", step::LEAP),
+        ("DRAWN_LEFT", overshoot::LEFT),
+        ("DRAWN_PART", overshoot::PART),
+        ("DRAWN_LEAST", overshoot::LEAST),
         ("MOST_DRAG", crate::body_contact::MOST_DRAG),
         ("VISCOSITY", air::VISCOSITY),
         ("PI", std::f64::consts::PI),

@@ -2,34 +2,36 @@
 
 use super::GpuError;
 use super::device::{GpuDevice, LIMITS};
+use super::drawn::Drawn;
 use super::kernel::Kernels;
-use super::layout::{
-    Body as BodyRecord, NONE, Params, Pin as PinRecord, REJECTED_LEAPING, REJECTED_SHRINKING,
-};
+use super::layout::{NONE, Params, REJECTED_LEAPING, REJECTED_SHRINKING, Status};
+use super::surroundings::fit;
 use super::system::{System, Verdict};
 use super::tables::Tables;
-use crate::body::Body;
-use crate::curves::string_together;
+use crate::costs::Costs;
 use crate::facts::{self, Facts};
+use crate::forces::{Forces, HoldFact};
 use crate::friction::{Anchors, Stack};
+use crate::handover::Handover;
 use crate::material::Material;
 use crate::materials::Materials;
-use crate::model::{FROZEN, Model, SegmentTerm};
-use crate::noise::unit_hash;
+use crate::model::{Model, SegmentTerm};
+use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::simulator::{GROWTH, MOST_HALVINGS, NOISE, SimError, StepReport, check_state, model_after};
+use crate::simulator::{GROWTH, MOST_HALVINGS, SimError, StepReport, model_after};
 use crate::solver::{SolveError, TOLERANCE};
 use crate::step::Rejection;
-use crate::surgery::{self, Operation, Surgery, slip};
-use crate::take_in::{TIME, TakeIn};
-use glam::{DQuat, DVec3};
-use std::collections::{BTreeMap, HashMap};
+use crate::surgery::{self, Operation, slip};
+use crate::take_in::TakeIn;
+use glam::DVec3;
 use std::sync::Arc;
-use stitch_mesh::yarn_curves::YarnCurves;
 use stitch_mesh::yarn_net::{NodeKind, YarnNet, YarnState};
 
 /// Iterations of conjugate gradients recorded beyond those that the last step took, so that most steps are one submission.
 const SPARE_ITERATIONS: u32 = 4;
+
+/// Iterations that are recorded in any case, but for the spare ones.
+const LEAST_ITERATIONS: u32 = 4;
 
 /// Iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 300;
@@ -39,29 +41,29 @@ const KEEP: f64 = 0.05;
 
 /// A simulation on the GPU.
 pub struct GpuSimulator {
-    system: System,
-    model: Model,
-    take_in: TakeIn,
-    materials: Materials,
-    scene: Scene,
-    origin: DVec3,
+    pub(super) system: System,
+    pub(super) model: Model,
+    pub(super) take_in: TakeIn,
+    pub(super) materials: Materials,
+    pub(super) scene: Scene,
+    pub(super) origin: DVec3,
     mass_damping: f64,
     /// Part of what is taken in that has been.
-    taken_in: f64,
+    pub(super) taken_in: f64,
     /// Meshes among the bodies, and where each one's distances begin.
-    fields: Vec<(usize, u32)>,
-    step: f64,
-    time: f64,
-    scene_time: f64,
-    steps: u64,
-    rejected: u64,
+    pub(super) fields: Vec<(usize, u32)>,
+    pub(super) step: f64,
+    pub(super) progress: Progress,
     iterations: u32,
-    surgery: Surgery,
+    /// What the steps have cost; none where nobody wants to know.
+    costs: Option<Costs>,
+    /// What lays out the yarn for a renderer, once one wants it; none where it can't.
+    pub(super) drawn: Option<Option<Drawn>>,
     /// The state as last read back.
-    state: YarnState,
-    is_read: bool,
-    /// Simulated time when it was [s].
-    read_at: f64,
+    pub(super) state: YarnState,
+    pub(super) is_read: bool,
+    /// How far the simulation had come then.
+    pub(super) read_at: Progress,
 }
 
 impl GpuSimulator {
@@ -76,8 +78,12 @@ impl GpuSimulator {
         scene: Scene,
         state: YarnState,
     ) -> Result<Self, SimError> {
-        let most = LIMITS.max_storage_buffer_binding_size / 4;
-        Self::with(gpu, gpu.kernels()?, most, net, materials.into(), scene, state)
+        Self::resume(gpu, Handover::new(net, materials, scene, state)?)
+    }
+
+    /// Goes on with what another simulation has come to.
+    pub(crate) fn resume(gpu: &GpuDevice, from: Handover) -> Result<Self, SimError> {
+        Self::with(gpu, gpu.kernels()?, LIMITS.max_storage_buffer_binding_size / 4, from)
     }
 
     /// The same with other kernels, and another limit to the numbers in a binding.
@@ -85,28 +91,18 @@ impl GpuSimulator {
         gpu: &GpuDevice,
         kernels: Kernels,
         most: u64,
-        net: &Arc<YarnNet>,
-        materials: Materials,
-        scene: Scene,
-        mut state: YarnState,
+        from: Handover,
     ) -> Result<Self, SimError> {
-        materials.validate()?;
-        scene.validate(net.nodes.len())?;
-        let mut model = Model::new(Arc::clone(net))?;
-        let take_in = TakeIn::new(net);
-        take_in.shorten_turns(&mut model, state.taken_in);
-        check_state(&model, &state)?;
-        for (i, x) in state.position.iter_mut().enumerate() {
-            let noise = |k: usize| NOISE * (unit_hash((3 * i + k) as u64) - 0.5);
-            *x += DVec3::new(noise(0), noise(1), noise(2));
-        }
+        let Handover { model, take_in, materials, scene, state, progress } = from;
+        fit(&scene)?;
         let origin = state.position.iter().sum::<DVec3>() / state.position.len().max(1) as f64;
-        let tables = Tables::new(&Model::new(Arc::clone(net))?, &materials, &take_in, origin, most)?;
-        let system = System::new(gpu, kernels, tables, &model.resolve(&materials), net.visits.len())?;
+        // What has been taken in stands in the tables beside the turns.
+        let mut laid = model.clone();
+        take_in.shorten_turns(&mut laid, -state.taken_in);
+        let tables = Tables::new(&laid, &materials, &take_in, origin, most)?;
         let mut simulator = Self {
-            system,
+            system: System::new(gpu, kernels, tables, &model.resolve(&materials))?,
             take_in,
-            scene: Scene::default(),
             origin,
             mass_damping: mass_damping(&model, &materials),
             model,
@@ -114,19 +110,18 @@ impl GpuSimulator {
             taken_in: state.taken_in,
             fields: Vec::new(),
             step: scene.time_step,
-            time: 0.0,
-            scene_time: 0.0,
-            steps: 0,
-            rejected: 0,
+            scene,
+            read_at: progress.clone(),
+            progress,
             iterations: 16,
-            surgery: Surgery::default(),
+            costs: None,
+            drawn: None,
             state,
             is_read: true,
-            read_at: 0.0,
         };
-        let anchors = Anchors::at(&Stack::all(net), &simulator.state.sliding);
+        let anchors = Anchors::at(&Stack::all(&simulator.model.net), &simulator.state.sliding);
         simulator.upload_state(&anchors);
-        simulator.set_scene(scene)?;
+        simulator.upload_fields()?;
         Ok(simulator)
     }
 
@@ -137,17 +132,13 @@ impl GpuSimulator {
     /// No time step is small enough, or the GPU fails.
     pub fn step(&mut self) -> Result<StepReport, SimError> {
         let smallest = self.scene.time_step * 0.5f64.powi(MOST_HALVINGS);
-        let part = (self.step / TIME).min(1.0 - self.taken_in).max(0.0);
-        self.taken_in += part;
-        self.take_in.shorten_turns(&mut self.model, part);
+        self.take_in()?;
         let mut rejected = 0;
         loop {
             match self.attempt()? {
                 None => {
                     let report = StepReport { time_step: self.step, rejected };
-                    self.time += self.step;
-                    self.scene_time += self.step;
-                    self.steps += 1;
+                    self.progress.add(self.step);
                     self.step = self.scene.time_step.min(GROWTH * self.step);
                     while let Some(operation) = self.slipped()? {
                         self.operate(operation)?;
@@ -156,17 +147,31 @@ impl GpuSimulator {
                 }
                 Some(cause) => {
                     rejected += 1;
-                    self.rejected += 1;
-                    tracing::debug!(time_s = self.time, step_s = self.step, %cause, "step rejected");
+                    self.progress.rejected += 1;
+                    tracing::debug!(time_s = self.progress.time_s, step_s = self.step, %cause, "step rejected");
                     if self.step <= smallest {
                         let step_s = self.step;
                         self.step = self.scene.time_step;
-                        return Err(SimError::Stuck { time_s: self.time, step_s, cause });
+                        return Err(SimError::Stuck { time_s: self.progress.time_s, step_s, cause });
                     }
                     self.step *= 0.5;
                 }
             }
         }
+    }
+
+    /// Takes in as much as a step does, on the CPU: it goes along whole yarns, and is soon over.
+    fn take_in(&mut self) -> Result<(), GpuError> {
+        if self.take_in.is_over(self.taken_in) {
+            return Ok(());
+        }
+        self.state()?;
+        let mut anchors = self.anchors()?;
+        let stacks = Stack::all(&self.model.net);
+        self.take_in.step(&mut self.model, &mut self.state, (&stacks, &mut anchors), self.step);
+        self.taken_in = self.state.taken_in;
+        self.upload_state(&anchors);
+        Ok(())
     }
 
     /// What has slipped out in the state now; only yarn that is loose somewhere, or a loop that nothing holds, can.
@@ -196,32 +201,16 @@ impl GpuSimulator {
         let tables = Tables::new(&model, &self.materials, &take_in, self.origin, most)?;
         let gpu = self.system.gpu.clone();
         let kernels = gpu.kernels()?;
-        self.system = System::new(&gpu, kernels, tables, &model.resolve(&self.materials), net.visits.len())?;
-        self.surgery.add(operation, self.taken_in);
+        self.system = System::new(&gpu, kernels, tables, &model.resolve(&self.materials))?;
+        self.progress.surgery.add(operation, self.taken_in);
         (self.model, self.take_in, self.state) = (model, take_in, done.state);
         self.mass_damping = mass_damping(&self.model, &self.materials);
         let anchors = anchors.carried(&Stack::all(&net), &done.was, &self.state.sliding);
         self.upload_state(&anchors);
-        let (mut scene, step) = (self.scene.clone(), self.step);
-        scene.follow(&done.node);
-        self.set_scene(scene)?;
-        self.step = step;
-        Ok(())
-    }
-
-    /// Where yarns stick now.
-    fn anchors(&self) -> Result<Anchors, GpuError> {
-        let [visits] = self.system.read(["visits"])?;
-        let own = |v: usize| self.unslid(v) + f64::from(visits[4 * v + 2]);
-        let mut anchors = Anchors {
-            own: (0..self.state.sliding.len()).map(own).collect(),
-            between: vec![0.0; self.state.sliding.len()],
-        };
-        for pair in self.model.net.nodes.iter().flat_map(|n| n.visits.windows(2)) {
-            let [a, b] = [pair[0].index(), pair[1].index()];
-            anchors.between[a] = self.unslid(a) - self.unslid(b) + f64::from(visits[4 * a + 3]);
-        }
-        Ok(anchors)
+        self.read_at = self.progress.clone();
+        self.drawn = None;
+        self.scene.follow(&done.node);
+        self.upload_fields()
     }
 
     /// One attempt at a step, and why it was thrown away if it was.
@@ -230,14 +219,21 @@ impl GpuSimulator {
         let params = self.params(self.step);
         let mut recorded = self.iterations + SPARE_ITERATIONS;
         self.is_read = false;
-        let mut verdict = self.system.step(params, recorded)?;
+        let mut verdict = self.system.step(params, recorded, self.costs.as_mut())?;
         while verdict.status.solved == 0 && recorded < MOST_ITERATIONS {
             let more = recorded.min(MOST_ITERATIONS - recorded);
             recorded += more;
-            verdict = self.system.go_on(more)?;
+            verdict = self.system.go_on(more, self.costs.as_mut())?;
         }
         // The first look at the error counts as one.
-        self.iterations = verdict.status.iterations.saturating_sub(1).max(4);
+        let iterations = verdict.status.iterations.saturating_sub(1);
+        self.iterations = iterations.max(LEAST_ITERATIONS);
+        if let Some(costs) = &mut self.costs {
+            costs.attempts += 1;
+            costs.iterations += u64::from(iterations);
+            let Status { error, goal, .. } = verdict.status;
+            costs.residual = TOLERANCE * f64::from(error / goal.max(f32::MIN_POSITIVE)).sqrt();
+        }
         Ok(if self.system.had_room(&verdict) { rejection(&verdict) } else { Some(Rejection::Crowded) })
     }
 
@@ -267,119 +263,6 @@ impl GpuSimulator {
         })
     }
 
-    /// Puts bodies and springs where they are at the end of the step.
-    pub(crate) fn place_surroundings(&mut self) -> Result<(), GpuError> {
-        let end = self.scene_time + self.step;
-        let mut springs: BTreeMap<u32, (f64, DVec3)> = BTreeMap::new();
-        let clamped = self.scene.clamps.iter().flat_map(|c| c.pins(end));
-        for pin in self.scene.pins.iter().copied().chain(clamped) {
-            // Springs on one node are one spring.
-            let (stiffness, pull) = springs.entry(pin.node).or_default();
-            *stiffness += pin.stiffness;
-            *pull += pin.stiffness * (pin.target - self.origin);
-        }
-        let pin = |(node, (stiffness, pull)): (&u32, &(f64, DVec3))| {
-            let target = (*pull / stiffness.max(f64::MIN_POSITIVE)).as_vec3();
-            let node = self.system.tables.pattern.new[*node as usize];
-            PinRecord { node, stiffness: *stiffness as f32, x: target.x, y: target.y, z: target.z }
-        };
-        let pins: Vec<PinRecord> = springs.iter().map(pin).collect();
-        let bodies: Vec<BodyRecord> = (0..self.scene.bodies.len()).map(|b| self.body(b)).collect();
-        self.system.set_surroundings(&bodies, None, &pins, pins.len() as u32)
-    }
-
-    /// A body of the scene during the step to come.
-    fn body(&self, index: usize) -> BodyRecord {
-        let body = &self.scene.bodies[index];
-        let poses = [self.scene_time, self.scene_time + self.step].map(|t| body.pose(t));
-        let shift = poses.map(|pose| (pose.apply(self.origin) - self.origin).as_vec3());
-        let turn = poses.map(|pose| pose.rotation().as_quat());
-        let mut record = BodyRecord {
-            friction: body.friction() as f32,
-            moves: u32::from(body.motion().is_some()),
-            turn_w: 1.0,
-            ..BodyRecord::default()
-        };
-        (record.from_x, record.from_y, record.from_z, record.from_w) = turn[0].into();
-        (record.to_x, record.to_y, record.to_z, record.to_w) = turn[1].into();
-        (record.from_shift_x, record.from_shift_y, record.from_shift_z) = shift[0].into();
-        (record.to_shift_x, record.to_shift_y, record.to_shift_z) = shift[1].into();
-        let mut place = |a: DVec3, b: DVec3, size: f64| {
-            (record.a_x, record.a_y, record.a_z) = (a - self.origin).as_vec3().into();
-            (record.b_x, record.b_y, record.b_z) = b.as_vec3().into();
-            record.size = size as f32;
-        };
-        let resting = match body {
-            Body::Moving { body, .. } => &**body,
-            resting => resting,
-        };
-        match resting {
-            Body::Ground { height, .. } => place(*height * DVec3::Y, DVec3::ZERO, 0.0),
-            Body::Sphere { center, radius, .. } => {
-                place(*center, DVec3::ZERO, *radius);
-                record.kind = 1;
-            }
-            Body::Capsule { from, to, radius, .. } => {
-                place(*from, *to - self.origin, *radius);
-                record.kind = 2;
-            }
-            Body::Box { center, size, turn, .. } => {
-                place(*center, *size, 0.0);
-                record.kind = 3;
-                let turn = DQuat::from_scaled_axis(*turn).as_quat();
-                (record.turn_x, record.turn_y, record.turn_z, record.turn_w) = turn.into();
-            }
-            Body::Mesh { mesh, .. } => {
-                let (low, cell, corners, _) = mesh.grid();
-                place(low, DVec3::ZERO, cell);
-                record.kind = 4;
-                (record.corners_x, record.corners_y, record.corners_z) = corners.into();
-                record.field = self.fields.iter().find(|(b, _)| *b == index).map_or(0, |(_, field)| *field);
-            }
-            // Refused by `set_scene`.
-            Body::Sequence { .. } | Body::Moving { .. } => {}
-        }
-        record
-    }
-
-    /// Changes gravity, bodies, pins or time step; refused as a whole if anything in it makes no sense. What moves begins anew,
-    /// unless all of it moves as before.
-    ///
-    /// # Errors
-    /// A scene that makes no sense, or distances of meshes that the GPU has no place for.
-    pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimError> {
-        scene.validate(self.model.net.nodes.len())?;
-        let mut distances: Vec<f32> = Vec::new();
-        let mut fields = Vec::new();
-        for (index, body) in scene.bodies.iter().enumerate() {
-            let resting = match body {
-                Body::Moving { body, .. } => &**body,
-                resting => resting,
-            };
-            if let Body::Sequence { .. } = resting {
-                return Err(GpuError::Unsupported(format!("body {index} changes its shape")).into());
-            }
-            if let Body::Mesh { mesh, .. } = resting {
-                fields.push((index, distances.len() as u32));
-                distances.extend(mesh.grid().3);
-            }
-        }
-        if 4 * distances.len() as u64 > LIMITS.max_storage_buffer_binding_size {
-            return Err(
-                GpuError::Unsupported("the meshes of the scene have too large a grid".to_owned()).into()
-            );
-        }
-        self.step = scene.time_step;
-        if !scene.moves_like(&self.scene) {
-            self.scene_time = 0.0;
-        }
-        self.scene = scene;
-        self.fields = fields;
-        let bodies = vec![BodyRecord::default(); self.scene.bodies.len()];
-        self.system.set_surroundings(&bodies, Some(&distances), &[], 0)?;
-        Ok(())
-    }
-
     /// Changes the materials; refused as a whole if anything in them makes no sense.
     ///
     /// # Errors
@@ -391,69 +274,8 @@ impl GpuSimulator {
         self.system.set_materials(&self.model.resolve(&materials));
         self.mass_damping = mass_damping(&self.model, &materials);
         self.materials = materials;
+        self.drawn = None;
         Ok(())
-    }
-
-    /// Writes the whole state to the device: positions about the origin, sliding from what is laid, anchors where yarns are.
-    fn upload_state(&self, anchors: &Anchors) {
-        let Self { state, system, .. } = self;
-        let pattern = &system.tables.pattern;
-        let four = |v: DVec3| v.as_vec3().extend(0.0).to_array();
-        let position: Vec<[f32; 4]> =
-            pattern.old.iter().map(|n| four(state.position[*n as usize] - self.origin)).collect();
-        let velocity: Vec<[f32; 4]> = pattern.old.iter().map(|n| four(state.velocity[*n as usize])).collect();
-        let slide = |v: usize| (state.sliding[v] - self.unslid(v)) as f32;
-        let mut visits: Vec<[f32; 4]> = (0..state.sliding.len())
-            .map(|v| {
-                let frozen = self.model.sliding[v] == FROZEN;
-                let rate = if frozen { 0.0 } else { state.sliding_velocity[v] as f32 };
-                [slide(v), rate, (anchors.own[v] - self.unslid(v)) as f32, 0.0]
-            })
-            .collect();
-        for node in &self.model.net.nodes {
-            for pair in node.visits.windows(2) {
-                let [a, b] = [pair[0].index(), pair[1].index()];
-                visits[a][3] = (anchors.between[a] - self.unslid(a) + self.unslid(b)) as f32;
-            }
-        }
-        system.write("position", &position);
-        system.write("velocity", &velocity);
-        system.write("visits", &visits);
-    }
-
-    /// Sliding coordinate of a visit that has not slid [m].
-    fn unslid(&self, visit: usize) -> f64 {
-        let id = stitch_mesh::ids::VisitId::new(visit);
-        self.model.net.visits[visit].u - self.taken_in * self.take_in.total(id)
-    }
-
-    /// The state now, read back from the device if it has changed since it last was.
-    ///
-    /// # Errors
-    /// The GPU fails; [`Self::last_state`] is that of the last good read.
-    pub fn state(&mut self) -> Result<&YarnState, GpuError> {
-        if !self.is_read {
-            let [position, velocity, visits] = self.system.read(["position", "velocity", "visits"])?;
-            let of = |numbers: &[f32], i: usize| {
-                DVec3::new(
-                    f64::from(numbers[4 * i]),
-                    f64::from(numbers[4 * i + 1]),
-                    f64::from(numbers[4 * i + 2]),
-                )
-            };
-            for (i, old) in self.system.tables.pattern.old.iter().enumerate() {
-                self.state.position[*old as usize] = self.origin + of(&position, i);
-                self.state.velocity[*old as usize] = of(&velocity, i);
-            }
-            for v in 0..self.state.sliding.len() {
-                self.state.sliding[v] = self.unslid(v) + f64::from(visits[4 * v]);
-                self.state.sliding_velocity[v] = f64::from(visits[4 * v + 1]);
-            }
-            self.state.taken_in = self.taken_in;
-            self.is_read = true;
-            self.read_at = self.time;
-        }
-        Ok(&self.state)
     }
 
     /// The state that was last read back: what the CPU can go on from when the GPU is lost.
@@ -466,61 +288,57 @@ impl GpuSimulator {
     /// # Errors
     /// The GPU fails.
     pub fn keep(&mut self) -> Result<(), GpuError> {
-        if self.time - self.read_at >= KEEP {
+        if self.progress.time_s - self.read_at.time_s >= KEEP {
             self.state()?;
         }
         Ok(())
     }
 
-    /// Simulated time of the state that was last read back [s].
-    pub fn last_time_s(&self) -> f64 {
-        self.read_at
-    }
-
-    /// The yarns as they are drawn: `curves` on the device.
-    ///
-    /// # Errors
-    /// The GPU fails.
-    pub fn curves(&mut self) -> Result<YarnCurves, GpuError> {
-        let points = self.system.points(self.params(self.step))?;
-        let net = &self.model.net;
-        let at = |i: usize| {
-            let p = &points[4 * i..4 * i + 4];
-            let x = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-            (p[3] > 0.0).then(|| (self.origin + x).as_vec3())
-        };
-        let mut middles = HashMap::new();
-        for (joint, contact) in self.system.tables.joints.iter().zip(&net.contacts) {
-            let yarns = std::iter::once(contact.new).chain(contact.old.iter().copied());
-            yarns.enumerate().for_each(|(i, ends)| {
-                middles.insert(ends, at(joint.point as usize + i));
-            });
+    /// What another solver can go on with, from the state that was last read back.
+    pub(crate) fn handover(&self) -> Handover {
+        let mut model = self.model.clone();
+        self.take_in.shorten_turns(&mut model, self.state.taken_in - self.taken_in);
+        Handover {
+            model,
+            take_in: self.take_in.clone(),
+            materials: self.materials.clone(),
+            scene: self.scene.clone(),
+            state: self.state.clone(),
+            progress: self.read_at.clone(),
         }
-        Ok(string_together(net, &self.materials, &|visit| at(visit.index()), &|a, b| {
-            middles.get(&[a, b]).or_else(|| middles.get(&[b, a])).copied().flatten()
-        }))
     }
 
-    /// What there is to report of the simulation so far; the forces of what holds the fabric are left out.
+    /// What there is to report of the simulation so far; the forces of bodies are left out.
     ///
     /// # Errors
     /// The GPU fails.
     pub fn facts(&mut self) -> Result<Facts, GpuError> {
         self.state()?;
-        let Self { model, materials, state, .. } = &*self;
+        let Self { model, materials, state, scene, progress, .. } = &*self;
         Ok(Facts {
             solver: "gpu".to_owned(),
-            steps: self.steps,
-            time_s: self.time,
+            steps: progress.steps,
+            time_s: progress.time_s,
             kinetic_j: model.kinetic_energy(materials, state),
-            rejected_steps: self.rejected,
-            ..facts::measure(model, materials, (&self.scene, self.scene_time), state)
+            holds: self.holds(),
+            rejected_steps: progress.rejected,
+            ..facts::measure(model, materials, (scene, progress.scene_time_s), state)
         })
     }
 
-    /// What has been done to the net, and has happened to it, since this simulation began.
-    pub fn surgery(&self) -> &Surgery {
-        &self.surgery
+    /// Forces of pins and clamps on the fabric in the state that was last read back.
+    pub fn holds(&self) -> Vec<HoldFact> {
+        let time_s = self.read_at.scene_time_s;
+        Forces::of_springs(&self.scene, &self.state.position, time_s).in_words(&self.scene)
+    }
+
+    /// Root-mean-square speed of the yarn [m/s].
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn speed(&mut self) -> Result<f64, GpuError> {
+        self.state()?;
+        Ok(self.model.speed(&self.materials, &self.state))
     }
 
     /// The net.
@@ -528,29 +346,25 @@ impl GpuSimulator {
         &self.model.net
     }
 
+    /// The materials of its yarns.
+    pub fn materials(&self) -> &Materials {
+        &self.materials
+    }
+
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Simulated time [s].
-    pub fn time_s(&self) -> f64 {
-        self.time
+    /// How far the simulation has come.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
     }
 
-    /// Time since the scene began, by which bodies and clamps move [s].
-    pub fn scene_time_s(&self) -> f64 {
-        self.scene_time
-    }
-
-    /// Steps taken.
-    pub fn steps(&self) -> u64 {
-        self.steps
-    }
-
-    /// Attempts thrown away.
-    pub fn rejected(&self) -> u64 {
-        self.rejected
+    /// Goes on at a time of the scene [s].
+    pub fn resume_at(&mut self, scene_time_s: f64) {
+        self.progress.scene_time_s = scene_time_s;
+        self.read_at.scene_time_s = scene_time_s;
     }
 
     /// Iterations that the last step took.
@@ -558,9 +372,24 @@ impl GpuSimulator {
         self.iterations
     }
 
-    /// Bytes on the device.
+    /// What its steps have cost since they began to be measured; nothing, if they aren't.
+    pub fn costs(&self) -> Costs {
+        self.costs.unwrap_or_default()
+    }
+
+    /// Measures from now on what its steps cost, which makes them a little slower: every stage is waited for.
+    pub fn measure_costs(&mut self) {
+        self.costs = Some(Costs::default());
+    }
+
+    /// The name of the adapter that it runs on.
+    pub fn adapter(&self) -> &str {
+        &self.system.gpu.adapter.name
+    }
+
+    /// What it takes on the device [bytes].
     pub fn bytes(&self) -> u64 {
-        self.system.tables.bytes()
+        self.system.buffers.bytes()
     }
 
     #[cfg(test)]

@@ -143,16 +143,19 @@ fn both_solve_a_tail_and_notice_where_it_lacks() {
 fn a_wrong_matrix_is_noticed() {
     let [(_, stitches), ..] = fabrics();
     let mut hanging = Hanging::new(&stitches);
-    let expected = hanging.step();
+    let mut solved = hanging.step();
     let Stepper { model, system, .. } = &mut hanging.stepper;
-    let solve = |matrix: &_, rhs: &[f64]| {
+    let mut velocities = |mut solver: Solver, matrix: &_, rhs: &[f64]| {
         let mut x = vec![0.0; rhs.len()];
-        Solver::iterative(model, matrix).solve(model, matrix, rhs, &mut x, &mut Costs::default()).unwrap();
-        let mut solved = expected.clone();
+        solver.solve(model, matrix, rhs, &mut x, &mut Costs::default()).unwrap();
         for (v, start) in solved.state.velocity.iter_mut().zip(&model.start) {
             *v = DVec3::from_slice(&x[*start as usize..]);
         }
-        difference(&expected, &solved)
+        solved.clone()
+    };
+    let expected = velocities(Solver::direct(model, &system.matrix), &system.matrix, &system.rhs);
+    let mut solve = |matrix: &_, rhs: &[f64]| {
+        difference(&expected, &velocities(Solver::iterative(model, matrix), matrix, rhs))
     };
     assert!(solve(&system.matrix, &system.rhs) < CLOSE);
     let middle = model.start[model.net.nodes.len() / 2] as usize;

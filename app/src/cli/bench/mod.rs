@@ -4,14 +4,15 @@
 //! tell whether they were bought with a wrong result.
 
 mod machine;
+mod measured;
 mod pull;
 mod scale;
 mod steps;
 
 use super::Output;
+use super::values::Solver;
 use anyhow::Result;
-use serde_json::{Map, Value, json};
-use sim_core::{Method, STAGES, Simulator};
+use sim_core::SolverChoice;
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -25,31 +26,14 @@ pub enum Suite {
 }
 
 /// Measures and prints.
-pub fn run(suite: Suite, most_loops: usize, print: Output) -> Result<()> {
+pub fn run(suite: Suite, most_loops: usize, solver: Option<Solver>, print: Output) -> Result<()> {
+    let solver = solver.map(SolverChoice::from);
     match suite {
-        Suite::Pull => pull::run(print),
-        Suite::Steps => steps::run(print),
-        Suite::Scale => scale::run(most_loops, print),
+        Suite::Pull => pull::run(solver.unwrap_or_default(), print),
+        Suite::Steps => {
+            let both = [SolverChoice::Direct, SolverChoice::Iterative];
+            steps::run(solver.as_ref().map_or(&both[..], std::slice::from_ref), print)
+        }
+        Suite::Scale => scale::run(most_loops, solver.unwrap_or_default(), print),
     }
-}
-
-/// What a simulator is solved by.
-fn solver(simulator: &Simulator) -> &'static str {
-    match simulator.method() {
-        Method::Direct => "direct",
-        Method::Iterative => "iterative",
-    }
-}
-
-/// Milliseconds of each stage of a step, by name.
-fn stages_ms(simulator: &Simulator) -> Map<String, Value> {
-    let costs = simulator.costs();
-    let per_step = |stage: usize| 1e3 * costs.stages[stage].as_secs_f64() / costs.attempts.max(1) as f64;
-    STAGES.iter().enumerate().map(|(i, name)| ((*name).to_owned(), json!(per_step(i)))).collect()
-}
-
-/// The stages in a line.
-fn stages_text(stages: &Map<String, Value>) -> String {
-    let stage = |(name, ms): (&String, &Value)| format!("{name} {:.1}", ms.as_f64().unwrap_or_default());
-    stages.iter().map(stage).collect::<Vec<_>>().join(", ")
 }

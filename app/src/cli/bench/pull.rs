@@ -1,12 +1,12 @@
 //! Stockinette that is pulled.
 
-use super::{solver, stages_ms, stages_text};
+use super::machine::{Machine, forget_peak};
+use super::measured::Measured;
 use crate::cli::Output;
 use anyhow::Result;
-use cpu_time::ProcessTime;
 use glam::DVec3;
 use serde_json::json;
-use sim_core::{Clamp, Key, Material, Motion, Scene, Simulator};
+use sim_core::{Clamp, Key, Material, Motion, Scene, SharedGpu, Simulation, SolverChoice};
 use std::sync::Arc;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::lay::lay;
@@ -25,7 +25,7 @@ const STEP: f64 = 0.02;
 const STIFFNESS: f64 = 10.0;
 
 /// Pulls and measures.
-pub fn run(print: Output) -> Result<()> {
+pub fn run(solver: SolverChoice, print: Output) -> Result<()> {
     let stitches = rectangle(SIDE, SIDE, StitchSize::of_width(LOOP))?;
     let net = Arc::new(lay(&stitches));
     let jaw = |column: usize, name: &str, side: f64| {
@@ -45,39 +45,15 @@ pub fn run(print: Output) -> Result<()> {
     };
     let clamps = vec![jaw(0, "left", -1.0), jaw(SIDE - 1, "right", 1.0)];
     let scene = Scene { clamps, time_step: STEP, ..Scene::empty() };
-    let mut simulator = Simulator::new(&net, Material::for_loop_width(LOOP), scene, net.laid_state())?;
-    let start = ProcessTime::now();
-    while simulator.time_s() < TIME - 1e-9 {
-        simulator.step()?;
-    }
-    let cpu_s = start.elapsed().as_secs_f64();
-    let facts = simulator.facts();
-    let loops = SIDE * SIDE;
-    let cost = cpu_s / (loops as f64 * simulator.time_s());
-    let (state, stages) = (simulator.state(), stages_ms(&simulator));
-    let json = json!({
-        "loops": loops,
-        "solver": solver(&simulator),
-        "steps": facts.steps,
-        "time_step_s": STEP,
-        "cpu_s_per_stitch_and_sim_s": cost,
-        "max_stretch_error": facts.max_stretch,
-        "min_yarn_distance_over_diameter": facts.min_yarn_distance_over_diameter,
-        "finite": state.is_finite(),
-        "rejected_steps": facts.rejected_steps,
-        "stages_ms": stages,
-    });
-    let text = format!(
-        "{loops} loops, {} solver: {cost:.5} s of processor per stitch and simulated second\n\
-         a step: {} ms\n\
-         largest stretch {:.4}, least yarn distance {:.3} diameters, {} of {} steps taken again",
-        solver(&simulator),
-        stages_text(&stages),
-        facts.max_stretch,
-        facts.min_yarn_distance_over_diameter,
-        facts.rejected_steps,
-        facts.steps
-    );
-    print.print(&json, &text);
+    let machine = Machine::measure();
+    forget_peak();
+    let material = Material::for_loop_width(LOOP);
+    let mut simulation =
+        Simulation::new(&SharedGpu::default(), solver, &net, material, scene, net.laid_state())?;
+    let pulled = |s: &Simulation| s.progress().time_s < TIME - 1e-9;
+    let measured = Measured::steps(&machine, SIDE * SIDE, &mut simulation, pulled)?;
+    let mut json = measured.json();
+    json.insert("time_step_s".to_owned(), json!(STEP));
+    print.print(&json.into(), &measured.text());
     Ok(())
 }

@@ -63,6 +63,10 @@ pub(super) const ACTIONS: &[Action] = &[
     .unless(no_fabric),
     Action::new("Step", "Simulate a single step", |e| _ = e.sim.send(SimCommand::StepOnce))
         .at(&[Stage::Yarn]),
+    Action::new("Reset", "Put the yarn back to where this simulation began", |e| {
+        e.sim.send(SimCommand::Reset);
+    })
+    .at(&[Stage::Yarn]),
     Action::new("Select", "Click to select, drag for a box; Shift adds, Ctrl removes", |e| {
         e.take(Tool::Select)
     })

@@ -45,3 +45,11 @@ fn turned_back(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
 fn is_finite(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
+
+// Unit tangent of the centripetal Catmull–Rom spline at the second of three control points; see `render`, `yarn/transport.rs`.
+fn direction_at(p0: vec3<f32>, p1: vec3<f32>, p2: vec3<f32>) -> vec3<f32> {
+    let d01 = max(sqrt(distance(p0, p1)), 1e-3);
+    let d12 = max(sqrt(distance(p1, p2)), 1e-3);
+    let derivative = (p1 - p0) / d01 - (p2 - p0) / (d01 + d12) + (p2 - p1) / d12;
+    return unit_or(derivative, unit_or(p2 - p1, vec3<f32>(1.0, 0.0, 0.0)));
+}

@@ -26,7 +26,7 @@ fn judge(@builtin(global_invocation_id) id: vec3<u32>) {
         wrong = REJECTED_NOT_FINITE;
     } else if next_yarn < 0.5 * yarn {
         wrong = REJECTED_SHRINKING;
-    } else if change > 0.5 * max(length(r), yarn) {
+    } else if change > LEAP * max(length(r), yarn) {
         wrong = REJECTED_LEAPING;
     }
     if wrong != 0u {

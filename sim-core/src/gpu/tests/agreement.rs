@@ -4,13 +4,14 @@
 //! single precision, 6e-8 an operation: forces are sums of some thirty terms, and the entries of bends and wraps have the
 //! third power of differences of positions in them, which have lost two digits.
 
-use super::{device, ten_fabrics};
+use super::{device, spoilt, ten_fabrics};
 use crate::assembly::Start;
 use crate::costs::Costs;
 use crate::friction::Anchors;
-use crate::gpu::kernel::{Kernels, SOURCES, Source};
+use crate::gpu::kernel::Kernels;
 use crate::gpu::layout::Params;
 use crate::gpu::{GpuDevice, GpuSimulator};
+use crate::handover::Handover;
 use crate::material::Material;
 use crate::materials::Materials;
 use crate::model::{FROZEN, Model};
@@ -80,8 +81,8 @@ impl Pair {
     ) -> Self {
         let net = Arc::new(net.clone());
         let materials = Materials::from(yarn);
-        let gpu =
-            GpuSimulator::with(device, kernels, most, &net, materials.clone(), scene.clone(), state).unwrap();
+        let from = Handover::new(&net, materials.clone(), scene.clone(), state).unwrap();
+        let gpu = GpuSimulator::with(device, kernels, most, from).unwrap();
         let mut state = gpu.last_state().clone();
         // As the device has it.
         let origin = gpu.origin();
@@ -337,15 +338,7 @@ fn a_wrong_kernel_is_found() {
         ("friction", "limits[i + 1u] += limit", "limits[i + 1u] -= limit", "matrix, held"),
         ("hold", "v.x - s.x + h * v.y", "v.x - s.x - h * v.y", "residual"),
     ] {
-        let spoil = |&(name, text, stages): &Source| -> Source {
-            if name != file {
-                return (name, text, stages);
-            }
-            assert!(text.contains(right), "{right}");
-            (name, text.replace(right, wrong).leak(), stages)
-        };
-        let sources: Vec<Source> = SOURCES.iter().map(spoil).collect();
-        let kernels = Kernels::compile(&device, &sources).unwrap();
+        let kernels = Kernels::compile(&device, &spoilt(file, right, wrong)).unwrap();
         let mut pair = Pair::new(&device, kernels, net, crumpled(net), pinned(net), ONE_CHUNK);
         let found = pair.differences().into_iter().find(|(_, difference, bound)| difference >= bound);
         println!("{file}: {found:?}");

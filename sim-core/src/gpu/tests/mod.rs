@@ -1,12 +1,14 @@
 //! The kernels: valid everywhere, and each against its twin on the CPU wherever there is an adapter, if only a software one.
 
 mod agreement;
+mod drawn;
 mod failure;
+mod rest;
 mod scenes;
 mod steps;
 
 use super::device::GpuDevice;
-use super::kernel::{SOURCES, source};
+use super::kernel::{SOURCES, Source, source};
 use super::layout::{OFFSETS, RECORDS, prelude};
 use std::sync::OnceLock;
 use stitch_mesh::cable::Cable;
@@ -29,6 +31,18 @@ fn device() -> Option<GpuDevice> {
         println!("SKIPPED: there is no GPU here, nor a software one");
     }
     device.clone()
+}
+
+/// The kernels with a mistake in one file.
+fn spoilt(file: &str, right: &str, wrong: &str) -> Vec<Source> {
+    let spoil = |&(name, text, stages): &Source| -> Source {
+        if name != file {
+            return (name, text, stages);
+        }
+        assert!(text.contains(right), "{right}");
+        (name, text.replace(right, wrong).leak(), stages)
+    };
+    SOURCES.iter().map(spoil).collect()
 }
 
 /// Ten small fabrics, each of another construction.

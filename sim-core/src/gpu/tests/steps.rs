@@ -14,7 +14,7 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 const CLOSE: f64 = 2e-6;
 
 /// The largest distance between nodes of two states [m].
-fn apart(a: &YarnState, b: &YarnState) -> f64 {
+pub(super) fn apart(a: &YarnState, b: &YarnState) -> f64 {
     a.position.iter().zip(&b.position).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
@@ -52,12 +52,12 @@ fn a_free_swatch_curls_as_on_the_cpu() {
     while cpu.time_s() < 0.15 {
         cpu.step().unwrap();
     }
-    while gpu.time_s() < 0.15 {
+    while gpu.progress().time_s < 0.15 {
         gpu.step().unwrap();
     }
     let moved = apart(cpu.state(), &net.laid_state());
     let difference = apart(cpu.state(), gpu.state().unwrap());
-    println!("moved {moved:.1e}, apart {difference:.1e}, rejected {}", gpu.rejected());
+    println!("moved {moved:.1e}, apart {difference:.1e}, rejected {}", gpu.progress().rejected);
     assert!(moved > 1e-3 && difference < 0.05 * moved);
 }
 
@@ -110,7 +110,7 @@ fn a_cut_goes_on_as_on_the_cpu() {
         gpu.step().unwrap();
     }
     assert_eq!(cpu.net().yarns.len(), gpu.net().yarns.len());
-    assert_eq!(gpu.surgery().operations.len(), cpu.surgery().operations.len());
+    assert_eq!(gpu.progress().surgery.operations.len(), cpu.surgery().operations.len());
     let difference = apart(cpu.state(), gpu.state().unwrap());
     println!("{difference:.1e} m");
     assert!(difference < 10.0 * CLOSE);

@@ -1,0 +1,55 @@
+// Lengths that segments gain by turning, taken off again: `overshoot::draw_back`. A sweep reads `back` and writes `back_next`.
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> counts: Counts;
+@group(0) @binding(2) var<storage, read> nodes: array<Node>;
+@group(0) @binding(3) var<storage, read> entries: array<u32>;
+@group(0) @binding(4) var<storage, read> segments: array<Segment>;
+@group(0) @binding(5) var<storage, read> position: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> next_position: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> moving: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> back: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read_write> back_next: array<vec4<f32>>;
+
+// How far one end is drawn to the other.
+fn drawn(own: u32, other: u32) -> vec3<f32> {
+    let r = position[other].xyz - position[own].xyz;
+    let moved = (next_position[other].xyz - next_position[own].xyz) - r;
+    let before = length(r);
+    let reckoned = (1.0 + DRAWN_LEFT) * max(before + dot(r, moved) / before, DRAWN_LEAST * before);
+    let after = r + moved + (back[other].xyz - back[own].xyz);
+    let length = length(after);
+    if length <= reckoned {
+        return vec3<f32>(0.0);
+    }
+    let share = nodes[other].mass / (nodes[own].mass + nodes[other].mass);
+    return DRAWN_PART * share * (length - reckoned) / length * after;
+}
+
+@compute @workgroup_size(WIDE)
+fn draw_back(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= counts.node_count {
+        return;
+    }
+    let own = counts.first_node + id.x;
+    let node = nodes[own];
+    var sum = back[own].xyz;
+    for (var entry = node.entry; entry < node.entry_end; entry += 3u) {
+        let word = entries[entry];
+        if (word & 3u) == OF_SEGMENT {
+            let term = segments[word >> 4u];
+            let is_first = ((word >> 2u) & 3u) == 0u;
+            sum += drawn(own, select(term.node_0, term.node_1, is_first));
+        }
+    }
+    back_next[own] = vec4<f32>(sum, 0.0);
+}
+
+@compute @workgroup_size(WIDE)
+fn come_back(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= counts.node_count {
+        return;
+    }
+    let own = counts.first_node + id.x;
+    next_position[own] = vec4<f32>(next_position[own].xyz + back[own].xyz, 0.0);
+    moving[own] = vec4<f32>(moving[own].xyz + back[own].xyz / params.h, 0.0);
+}

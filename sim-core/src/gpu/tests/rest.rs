@@ -1,0 +1,85 @@
+//! The rest shape of ten fabrics by each solver.
+//!
+//! Fabrics hang by their topmost nodes until they are as good as still. What is left between two solvers is friction: where yarn
+//! stops sliding hangs on the path there, and the paths part by what conjugate gradients leave of the error.
+
+use super::agreement::{crumpled, pinned};
+use super::steps::apart;
+use super::{device, spoilt, ten_fabrics};
+use crate::choice::{SharedGpu, SolverChoice};
+use crate::gpu::GpuSimulator;
+use crate::gpu::kernel::Kernels;
+use crate::handover::Handover;
+use crate::material::Material;
+use crate::scene::Scene;
+use crate::settle::{SettleGoal, Settled};
+use crate::simulation::Simulation;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use stitch_mesh::yarn_net::{YarnNet, YarnState};
+
+/// How far nodes may be apart at rest [m]: a hundredth of a loop's width. As laid they were 3e-6 apart at most; fabrics that were
+/// crumpled, and so came to rest by much more sliding, 2.3e-5.
+const CLOSE: f64 = 3e-5;
+
+/// When a fabric is at rest.
+const GOAL: SettleGoal = SettleGoal { speed: 1e-3, time_limit_s: 2.0 };
+
+/// Yarn that comes to rest soon.
+fn calm() -> Material {
+    Material { mass_damping: 40.0, ..Material::for_loop_width(3e-3) }
+}
+
+/// The scene that a fabric comes to rest in.
+fn hanging(net: &YarnNet) -> Scene {
+    Scene { time_step: 10e-3, ..pinned(net) }
+}
+
+fn at_rest(name: &str, mut simulation: Simulation) -> YarnState {
+    let ended = simulation.settle(GOAL, &mut |_| ControlFlow::Continue(())).unwrap();
+    println!("{name}, {}: {ended:?} after {} steps", simulation.solver(), simulation.progress().steps);
+    assert_eq!(ended, Settled::Still, "{name}");
+    assert_eq!(simulation.notice(), None);
+    simulation.state().unwrap().clone()
+}
+
+#[test]
+fn ten_fabrics_come_to_the_same_rest_by_every_solver() {
+    let Some(device) = device() else { return };
+    let gpu = SharedGpu::from(device);
+    for (name, net) in ten_fabrics() {
+        let net = Arc::new(net);
+        // Cloth rests as it was laid.
+        let start = if name == "woven" { crumpled(&net) } else { net.laid_state() };
+        let rest = |choice| {
+            let made = Simulation::new(&gpu, choice, &net, calm(), hanging(&net), start.clone());
+            at_rest(name, made.unwrap())
+        };
+        let direct = rest(SolverChoice::Direct);
+        let moved = apart(&direct, &start);
+        assert!(moved > 5.0 * CLOSE, "{name} has hardly moved: {moved:e}");
+        for choice in [SolverChoice::Iterative, SolverChoice::Gpu] {
+            let difference = apart(&direct, &rest(choice));
+            println!("{name}: moved {moved:.1e}, {choice:?} is {difference:.1e} m away");
+            assert!(difference < CLOSE, "{name}, {choice:?}: {difference:e}");
+        }
+    }
+}
+
+#[test]
+fn another_rest_shape_is_found() {
+    let Some(device) = device() else { return };
+    let (name, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    let gpu = SharedGpu::from(device.clone());
+    let made = Simulation::new(&gpu, SolverChoice::Direct, &net, calm(), hanging(&net), net.laid_state());
+    let right = at_rest(name, made.unwrap());
+    // Yarn that is stiffer in bending by a tenth.
+    let sources = spoilt("bend", "2.0 * yarn.bend * theta +", "2.2 * yarn.bend * theta +");
+    let kernels = Kernels::compile(&device, &sources).unwrap();
+    let from = Handover::new(&net, calm(), hanging(&net), net.laid_state()).unwrap();
+    let wrong = GpuSimulator::with(&device, kernels, 1 << 25, from).unwrap();
+    let difference = apart(&right, &at_rest(name, wrong.into()));
+    println!("{difference:.1e} m");
+    assert!(difference > CLOSE, "{difference:e}");
+}
