@@ -10,7 +10,6 @@ pub use crate::validate::MeshError;
 use crate::validate::{MeshProblem, area_vector, check, position_problems};
 use glam::DVec3;
 use rayon::prelude::*;
-use smallvec::SmallVec;
 use std::ops::Range;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -312,8 +311,7 @@ impl PolygonMesh {
 
     /// Area vector of a face (Newell): its length is the area [m²], its direction the front.
     pub fn face_area_vector(&self, face: FaceId) -> DVec3 {
-        let points: SmallVec<[DVec3; 8]> = self.face_vertices(face).map(|v| self.position(v)).collect();
-        area_vector(&points)
+        area_vector(self.face_vertices(face).map(|v| self.position(v)))
     }
 
     /// Unit normals at the vertices, area-weighted, [vertex_count].
