@@ -6,6 +6,7 @@ use anyhow::Result;
 use glam::DVec3;
 use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
 use sim_core::curves;
+use smallvec::SmallVec;
 use std::collections::HashMap;
 use stitch_mesh::ids::{EdgeId, FaceId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh, Row};
@@ -65,7 +66,7 @@ pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Resul
 
 /// The polygons of a mesh, coloured face by face.
 fn faces(mesh: &PolygonMesh, shown: Shown<'_>, color: impl Fn(usize) -> [f32; 3]) -> Faces {
-    let vertices = |f| if shown(f) { mesh.face_vertices(f).map(|v| v.0).collect() } else { Vec::new() };
+    let vertices = |f| if shown(f) { mesh.face_vertices(f).map(|v| v.0).collect() } else { SmallVec::new() };
     Faces {
         positions: mesh.positions().iter().map(|p| p.as_vec3()).collect(),
         polygons: mesh.faces().map(|f| Polygon { vertices: vertices(f), color: color(f.index()) }).collect(),
@@ -140,13 +141,19 @@ pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row]) -> Vec<[f32; 3]> {
     for row in rows.iter().skip(1).step_by(2) {
         row.faces.iter().for_each(|f| is_odd[f.index()] = true);
     }
-    // A fabric has few kinds of stitches, so their colours are looked up once each.
+    // A fabric has few kinds of stitches, and mostly several of one beside each other, so their colours are looked up once each.
     let mut known: HashMap<&Stitch, [[f32; 3]; 2]> = HashMap::new();
+    let mut last: Option<(&Stitch, [[f32; 3]; 2])> = None;
     let both = |stitch: &Stitch| [0, 1].map(|row| palette::stitch(&stitch.to_string(), row));
-    let colors = stitches.stitches().iter().zip(is_odd);
-    colors
-        .map(|(stitch, odd)| known.entry(stitch).or_insert_with(|| both(stitch))[usize::from(odd)])
-        .collect()
+    let colors = stitches.stitches().iter().zip(is_odd).map(|(stitch, odd)| {
+        let colors = match last {
+            Some((same, colors)) if same == stitch => colors,
+            _ => *known.entry(stitch).or_insert_with(|| both(stitch)),
+        };
+        last = Some((stitch, colors));
+        colors[usize::from(odd)]
+    });
+    colors.collect()
 }
 
 fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
