@@ -4,7 +4,8 @@ use crate::project::Project;
 use crate::solids::solids;
 use anyhow::Result;
 use glam::DVec3;
-use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
+use render::palette::{self, StitchColors};
+use render::{Drawing, Faces, Lines, Polygon, Segment};
 use sim_core::curves;
 use smallvec::SmallVec;
 use std::collections::HashMap;
@@ -40,7 +41,7 @@ pub type Shown<'a> = &'a dyn Fn(FaceId) -> bool;
 /// # Errors
 /// The stage has not been reached yet.
 pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
-    drawing_where(project, stage, &|_| true)
+    drawing_where(project, stage, &|_| true, StitchColors::default())
 }
 
 /// The picture of one stage, without the faces that are not `shown` (of a mesh; yarn passes from face to face). They have a
@@ -48,12 +49,17 @@ pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
 ///
 /// # Errors
 /// As [`drawing`].
-pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Result<Drawing> {
+pub fn drawing_where(
+    project: &Project,
+    stage: Stage,
+    shown: Shown<'_>,
+    colors: StitchColors,
+) -> Result<Drawing> {
     let labelled = &project.labelled;
     Ok(match stage {
         Stage::Mesh => mesh_drawing(labelled.mesh(), shown),
         Stage::Labels => label_drawing(labelled, shown),
-        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown),
+        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown, colors),
         Stage::Yarn => {
             let fabric = project.fabric()?;
             let yarn = curves(fabric.net(), &fabric.state(), &project.materials);
@@ -136,7 +142,7 @@ fn label_drawing(labelled: &LabelledMesh, shown: Shown<'_>) -> Drawing {
 }
 
 /// Colours of the faces of a stitch mesh with these rows, [face_count]: by kind, odd rows darker.
-pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row]) -> Vec<[f32; 3]> {
+pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row], colors: StitchColors) -> Vec<[f32; 3]> {
     let mut is_odd = vec![false; stitches.mesh().face_count()];
     for row in rows.iter().skip(1).step_by(2) {
         row.faces.iter().for_each(|f| is_odd[f.index()] = true);
@@ -144,7 +150,7 @@ pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row]) -> Vec<[f32; 3]> {
     // A fabric has few kinds of stitches, and mostly several of one beside each other, so their colours are looked up once each.
     let mut known: HashMap<&Stitch, [[f32; 3]; 2]> = HashMap::new();
     let mut last: Option<(&Stitch, [[f32; 3]; 2])> = None;
-    let both = |stitch: &Stitch| [0, 1].map(|row| palette::stitch(&stitch.to_string(), row));
+    let both = |stitch: &Stitch| [0, 1].map(|row| colors.of(&stitch.to_string(), row));
     let colors = stitches.stitches().iter().zip(is_odd).map(|(stitch, odd)| {
         let colors = match last {
             Some((same, colors)) if same == stitch => colors,
@@ -156,9 +162,9 @@ pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row]) -> Vec<[f32; 3]> {
     colors.collect()
 }
 
-fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
+fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>, colors: StitchColors) -> Drawing {
     let mesh = stitches.mesh();
-    let colors = stitch_colors(stitches, &stitches.rows());
+    let colors = stitch_colors(stitches, &stitches.rows(), colors);
     let lines = shown_edges(mesh, shown).map(|e| {
         let wale = stitches.is_wale(mesh.edge_sides(e).0);
         edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })

@@ -6,8 +6,12 @@ use crate::drawing::{Stage, drawing_where, stitch_colors};
 use crate::solids::solids;
 use glam::Vec3;
 use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, palette};
+use sim_core::Snapshot;
+use smallvec::SmallVec;
+use std::borrow::Cow;
 use std::sync::Arc;
-use stitch_mesh::ids::FaceId;
+use stitch_mesh::ids::{FaceId, VisitId};
+use stitch_mesh::yarn_curves::YarnCurves;
 
 /// Width of lines around what is selected and around what the pointer is over [px].
 const SELECTED_WIDTH: f32 = 4.0;
@@ -32,7 +36,7 @@ impl Editor {
         if !same {
             self.show_polygons(stage);
         } else if let (Some(fabric), Some(rows)) = (fabric, &self.view.fabric_rows) {
-            let colors = stitch_colors(&fabric.stitches, &rows.rows);
+            let colors = stitch_colors(&fabric.stitches, &rows.rows, self.stitch_colors);
             for (polygon, color) in self.faces.polygons.iter_mut().zip(colors) {
                 polygon.color = color;
             }
@@ -44,12 +48,14 @@ impl Editor {
         let drawing = match stage {
             Stage::Yarn => {
                 // Curves come with the snapshots, made in the simulation's thread.
-                let yarn = self.snapshot.as_ref().map(|s| s.curves.clone()).unwrap_or_default();
+                let yarn =
+                    self.snapshot.as_ref().map(|s| self.shown_yarn(s).into_owned()).unwrap_or_default();
                 Drawing { yarn, solids: self.solids_now(), ..Drawing::default() }
             }
             stage => {
                 let hidden = &self.selection().hidden;
-                drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f)).unwrap_or_default()
+                drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f), self.stitch_colors)
+                    .unwrap_or_default()
             }
         };
         let shown = self.screen.as_mut().map(|screen| screen.set(&drawing));
@@ -91,7 +97,8 @@ impl Editor {
     /// Puts yarn that has moved on the screen.
     pub(super) fn show_yarn(&mut self) {
         let Some(snapshot) = self.snapshot.clone() else { return };
-        let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&snapshot.curves));
+        let yarn = self.shown_yarn(&snapshot);
+        let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&yarn));
         self.report(shown);
         if self.view.project.scene.bodies.iter().any(|b| b.motion().is_some()) {
             let solids = self.solids_now();
@@ -100,6 +107,21 @@ impl Editor {
         }
         self.faces = self.loop_faces();
         self.marked = None;
+    }
+
+    /// The yarn of a snapshot without that of hidden stitches.
+    pub(super) fn shown_yarn<'a>(&self, snapshot: &'a Snapshot) -> Cow<'a, YarnCurves> {
+        let hidden = &self.selection().hidden;
+        if hidden.is_empty() {
+            return Cow::Borrowed(&snapshot.curves);
+        }
+        let net = &snapshot.net;
+        let gone = |visit: VisitId| {
+            let node = net.visits.get(visit.index()).and_then(|v| net.nodes.get(v.node.index()));
+            node.and_then(|n| n.face).is_some_and(|f| hidden.contains(&f))
+        };
+        let curves = snapshot.curves.curves.iter().flat_map(|curve| curve.without(gone)).collect();
+        Cow::Owned(YarnCurves { curves })
     }
 
     /// The bodies where they are in the simulation.
@@ -214,8 +236,13 @@ impl Editor {
                 nodes[face.index()].push([position.as_vec3(), node.position.as_vec3()]);
             }
         }
+        let hidden = &self.selection().hidden;
         let mut faces = Faces::default();
         for (face, nodes) in mesh.faces().zip(nodes) {
+            if hidden.contains(&face) {
+                faces.polygons.push(Polygon { vertices: SmallVec::new(), color: [0.0; 3] });
+                continue;
+            }
             let stitch = fabric.stitches.stitch(face);
             let outline = match nodes[..] {
                 // Four nodes an operation, as LL, LU, RU, RL.
