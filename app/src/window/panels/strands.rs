@@ -48,25 +48,21 @@ impl Fields {
 
 /// Shows the fields.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
-    let fields = &mut editor.panel.strands;
+    let field = |ui: &mut Ui, name: &str, value: &mut String, what: &str| {
+        let label = ui.label(name);
+        let field = egui::TextEdit::singleline(value).desired_width(44.0);
+        ui.add(field).labelled_by(label.id).on_hover_text(what);
+    };
     ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        for (name, value, width, what) in [
-            (
-                "Strands",
-                &mut fields.loops,
-                38.0,
-                "Loops of each strand, left to right below: 2/1, or 2/2/2 for a plait",
-            ),
-            ("Above", &mut fields.above, 26.0, "Strands left to right above; A is the leftmost below"),
-            ("In front", &mut fields.front, 26.0, "Strands front to back"),
-        ] {
-            let label = ui.label(name);
-            let field = egui::TextEdit::singleline(value).desired_width(width);
-            ui.add(field).labelled_by(label.id).on_hover_text(what);
-        }
+        let what = "Loops of each strand, left to right below: 2/1, or 2/2/2 for a plait";
+        field(ui, "Strands", &mut editor.panel.strands.loops, what);
+        button(editor, ui, "Cross strands");
     });
-    button(editor, ui, "Cross strands");
+    ui.horizontal(|ui| {
+        let fields = &mut editor.panel.strands;
+        field(ui, "Above", &mut fields.above, "Strands left to right above; A is the leftmost below");
+        field(ui, "In front", &mut fields.front, "Strands front to back");
+    });
 }
 
 #[cfg(test)]
