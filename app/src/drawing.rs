@@ -34,7 +34,7 @@ impl Stage {
 }
 
 /// Which faces show.
-pub type Shown<'a> = &'a dyn Fn(FaceId) -> bool;
+pub type Shown<'a> = &'a (dyn Fn(FaceId) -> bool + Sync);
 
 /// The picture of one stage.
 ///
@@ -59,7 +59,10 @@ pub fn drawing_where(
     Ok(match stage {
         Stage::Mesh => mesh_drawing(labelled.mesh(), shown),
         Stage::Labels => label_drawing(labelled, shown),
-        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown, colors),
+        Stage::Stitches => {
+            let stitches = &project.fabric()?.stitches;
+            stitch_drawing(stitches, &stitches.rows(), shown, colors)
+        }
         Stage::Yarn => {
             let fabric = project.fabric()?;
             let yarn = curves(fabric.net(), &fabric.state(), &project.materials);
@@ -162,16 +165,24 @@ pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row], colors: StitchColors) 
     colors.collect()
 }
 
-fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>, colors: StitchColors) -> Drawing {
+/// The picture of a stitch mesh with these rows.
+pub fn stitch_drawing(
+    stitches: &StitchMesh,
+    rows: &[Row],
+    shown: Shown<'_>,
+    colors: StitchColors,
+) -> Drawing {
     let mesh = stitches.mesh();
-    let colors = stitch_colors(stitches, &stitches.rows(), colors);
-    let lines = shown_edges(mesh, shown).map(|e| {
+    let line = |e| {
         let wale = stitches.is_wale(mesh.edge_sides(e).0);
         edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })
-    });
-    Drawing {
-        faces: faces(mesh, shown, |f| colors[f]),
-        lines: Lines { segments: lines.collect() },
-        ..Drawing::default()
-    }
+    };
+    let (faces, segments) = rayon::join(
+        || {
+            let colors = stitch_colors(stitches, rows, colors);
+            faces(mesh, shown, |f| colors[f])
+        },
+        || shown_edges(mesh, shown).map(line).collect(),
+    );
+    Drawing { faces, lines: Lines { segments }, ..Drawing::default() }
 }

@@ -87,14 +87,16 @@ fn describe(problems: &[MeshProblem]) -> String {
 
 /// Everything wrong with a mesh given as positions [m] and faces. Empty when [`crate::mesh::PolygonMesh::new`] succeeds.
 pub fn validate(positions: &[DVec3], faces: &[impl AsRef<[u32]> + Sync]) -> Vec<MeshProblem> {
-    check(positions, faces).err().unwrap_or_default()
+    check(positions, faces, |_| ()).err().unwrap_or_default()
 }
 
-/// The corners of a mesh in which nothing is wrong, or else all that is.
-pub(crate) fn check(
+/// The corners of a mesh, and what `work` has made of them while the mesh was looked through, if nothing is wrong with it; or else
+/// all that is. The work has to end whatever is wrong, short of vertices that do not exist.
+pub(crate) fn check<T: Send>(
     positions: &[DVec3],
     faces: &[impl AsRef<[u32]> + Sync],
-) -> Result<Corners, Vec<MeshProblem>> {
+    work: impl FnOnce(&Corners) -> T + Send,
+) -> Result<(Corners, T), Vec<MeshProblem>> {
     let mut problems = Vec::new();
     if faces.is_empty() {
         problems.push(MeshProblem::Empty);
@@ -113,13 +115,18 @@ pub(crate) fn check(
     let (degenerate, corners) =
         rayon::join(|| degenerate_faces(positions, faces), || Corners::new(positions.len(), faces));
     problems.extend(degenerate);
-    if corners.has_doubles() {
-        problems.extend(edge_problems(faces));
-    }
-    if problems.is_empty() {
-        problems = vertex_problems(positions.len(), &corners);
-    }
-    if problems.is_empty() { Ok(corners) } else { Err(problems) }
+    let (made, ()) = rayon::join(
+        || work(&corners),
+        || {
+            if corners.has_doubles() {
+                problems.extend(edge_problems(faces));
+            }
+            if problems.is_empty() {
+                problems = vertex_problems(positions.len(), &corners);
+            }
+        },
+    );
+    if problems.is_empty() { Ok((corners, made)) } else { Err(problems) }
 }
 
 /// What can be wrong with a mesh after its vertices have moved.

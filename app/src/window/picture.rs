@@ -2,7 +2,7 @@
 
 use super::editor::Editor;
 use super::selection::Mode;
-use crate::drawing::{Stage, drawing_where, stitch_colors};
+use crate::drawing::{Stage, drawing_where, stitch_colors, stitch_drawing};
 use crate::solids::solids;
 use glam::Vec3;
 use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, palette};
@@ -54,8 +54,14 @@ impl Editor {
             }
             stage => {
                 let hidden = &self.selection().hidden;
-                drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f), self.stitch_colors)
-                    .unwrap_or_default()
+                let (project, colors) = (&self.view.project, self.stitch_colors);
+                let shown = |f: FaceId| !hidden.contains(&f);
+                match (&project.fabric, &self.view.fabric_rows) {
+                    (Some(fabric), Some(rows)) if stage == Stage::Stitches => {
+                        stitch_drawing(&fabric.stitches, &rows.rows, &shown, colors)
+                    }
+                    _ => drawing_where(project, stage, &shown, colors).unwrap_or_default(),
+                }
             }
         };
         let shown = self.screen.as_mut().map(|screen| screen.set(&drawing));
