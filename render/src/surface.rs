@@ -28,7 +28,7 @@ pub(crate) struct SurfaceMesh {
 }
 
 /// Polygons as they are on the GPU.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 struct Polygons {
     /// Corners with normals.
     corners: Vec<[Vec3; 2]>,
@@ -83,6 +83,24 @@ impl Polygons {
             && self.outline(polygon).zip(faces.corners(other)).all(|(a, b)| a == b)
     }
 
+    /// Becomes the polygons of `faces`; of those that are as before at the beginning and at the end of the list nothing is worked out
+    /// again. Returns the first that is not.
+    fn become_those_of(&mut self, faces: &Faces, damage: &mut Damage) -> usize {
+        let [n, m] = [self.count(), faces.polygons.len()];
+        let least = n.min(m);
+        let head = (0..least).find(|i| !self.is(*i, faces, *i)).unwrap_or(least);
+        let rest = least - head;
+        let tail = (0..rest).find(|i| !self.is(n - 1 - i, faces, m - 1 - i)).unwrap_or(rest);
+        let others = Self::of(faces, head..m - tail);
+        let alike = |i: usize, j: usize| self.is(head + i, faces, head + j);
+        differences([n - tail - head, others.count()], alike, |only| match only {
+            Only::Before(i) => damage.add(self.outline(head + i), 0.0),
+            Only::After(j) => damage.add(others.outline(j), 0.0),
+        });
+        self.replace(head..n - tail, others);
+        head
+    }
+
     /// Puts others in place of some polygons.
     fn replace(&mut self, range: Range<usize>, by: Self) {
         let [from, to] = [range.start, range.end].map(|p| self.starts[p].map(|n| n as usize));
@@ -121,22 +139,10 @@ impl SurfaceMesh {
         }
     }
 
-    /// Replaces the triangles by those of polygons. Of polygons that are as before at the beginning and at the end of the list
-    /// nothing is worked out again, and at the beginning nothing is written.
+    /// Replaces the triangles by those of polygons. Those at the beginning that are as before are not written again.
     pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces, damage: &mut Damage) -> Result<(), RenderError> {
-        let now = &mut self.now;
-        let [n, m] = [now.count(), faces.polygons.len()];
-        let least = n.min(m);
-        let head = (0..least).find(|i| !now.is(*i, faces, *i)).unwrap_or(least);
-        let rest = least - head;
-        let tail = (0..rest).find(|i| !now.is(n - 1 - i, faces, m - 1 - i)).unwrap_or(rest);
-        let others = Polygons::of(faces, head..m - tail);
-        let alike = |i: usize, j: usize| now.is(head + i, faces, head + j);
-        differences([n - tail - head, others.count()], alike, |only| match only {
-            Only::Before(i) => damage.add(now.outline(head + i), 0.0),
-            Only::After(j) => damage.add(others.outline(j), 0.0),
-        });
-        now.replace(head..n - tail, others);
+        let head = self.now.become_those_of(faces, damage);
+        let now = &self.now;
         let [corner, index] = now.starts[head].map(|n| n as usize);
         let limit = gpu.device.limits().max_buffer_size;
         self.count = now.indices.len() as u32;
@@ -144,7 +150,7 @@ impl SurfaceMesh {
         self.shape.write_from(gpu, shape, corner * size_of::<[Vec3; 2]>(), limit)?;
         let indices = bytemuck::cast_slice(&now.indices);
         self.indices.write_from(gpu, indices, index * size_of::<u32>(), limit)?;
-        let colors = now.corner_colors(0..m);
+        let colors = now.corner_colors(0..now.count());
         self.colors.write_from(gpu, bytemuck::cast_slice(&colors), corner * size_of::<Vec4>(), limit)
     }
 
@@ -268,6 +274,41 @@ impl SurfacePipelines {
             pass.set_vertex_buffer(1, colors.slice(..));
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
             ranges.for_each(|range| pass.draw_indexed(range, 0, 0..1));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Polygon;
+
+    /// Polygons of these numbers of corners on a spiral, so that no two are alike.
+    fn faces(corners: &[usize]) -> Faces {
+        let mut faces = Faces::default();
+        for (i, n) in corners.iter().enumerate() {
+            let first = faces.positions.len() as u32;
+            let middle = Vec3::new(i as f32, (*n * *n) as f32, 0.0);
+            let around = |k: usize| Vec3::from((glam::Vec2::from_angle(k as f32 / *n as f32 * 6.2), 0.0));
+            faces.positions.extend((0..*n).map(|k| middle + around(k)));
+            let vertices = (first..first + *n as u32).collect();
+            faces.polygons.push(Polygon { vertices, color: [0.5; 3] });
+        }
+        faces
+    }
+
+    #[test]
+    fn what_is_kept_and_what_is_new_make_the_same_polygons() {
+        let lists: [&[usize]; 7] =
+            [&[4, 4, 4, 4], &[4, 5, 4, 4], &[4, 6, 4], &[4, 6, 0, 4, 4], &[], &[5, 3], &[4, 4, 4, 4]];
+        let mut polygons = Polygons::of(&Faces::default(), 0..0);
+        for list in lists {
+            let faces = faces(list);
+            let mut damage = Damage::none();
+            polygons.become_those_of(&faces, &mut damage);
+            assert_eq!(polygons, Polygons::of(&faces, 0..list.len()), "{list:?}");
+            assert!(!damage.is_none());
+            assert_eq!(polygons.become_those_of(&faces, &mut Damage::none()), list.len(), "all as before");
         }
     }
 }
