@@ -35,8 +35,8 @@
 //! before it is in the net (`faces`): half of the time had gone into memory that was touched for the first time. Of two threads
 //! one finds the rows while the other finds normals and templates; one follows the yarn while the other places nodes; one measures
 //! the yarn while the other numbers the contacts. On 65 000 stitches that is 30 ms of one processor and 19 ms of two, where finding
-//! the rows first had made it 47 and 28. What is left is 42 MB, written once and read once; laid into memory that nobody has had
-//! before, it takes half as long again. So an edit that changes the faces is laid as a whole: a net with a part cut out and put in would
+//! the rows first had made it 28 ms of two. What is left is 42 MB, written once and read once; laid into memory that nobody has had
+//! before, it takes a third as long again. So an edit that changes the faces is laid as a whole: a net with a part cut out and put in would
 //! have to be written as well, with every number after the edit moved. After an edit that leaves all yarns where they run, [`relay`]
 //! takes the net from before.
 
