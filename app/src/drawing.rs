@@ -4,8 +4,10 @@ use crate::project::Project;
 use crate::solids::solids;
 use anyhow::Result;
 use glam::DVec3;
-use render::{Drawing, Faces, Lines, Polygon, Segment, palette};
+use render::palette::{self, StitchColors};
+use render::{Drawing, Faces, Lines, Polygon, Segment};
 use sim_core::curves;
+use smallvec::SmallVec;
 use std::collections::HashMap;
 use stitch_mesh::ids::{EdgeId, FaceId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh, Row};
@@ -32,14 +34,14 @@ impl Stage {
 }
 
 /// Which faces show.
-pub type Shown<'a> = &'a dyn Fn(FaceId) -> bool;
+pub type Shown<'a> = &'a (dyn Fn(FaceId) -> bool + Sync);
 
 /// The picture of one stage.
 ///
 /// # Errors
 /// The stage has not been reached yet.
 pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
-    drawing_where(project, stage, &|_| true)
+    drawing_where(project, stage, &|_| true, StitchColors::default())
 }
 
 /// The picture of one stage, without the faces that are not `shown` (of a mesh; yarn passes from face to face). They have a
@@ -47,12 +49,20 @@ pub fn drawing(project: &Project, stage: Stage) -> Result<Drawing> {
 ///
 /// # Errors
 /// As [`drawing`].
-pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Result<Drawing> {
+pub fn drawing_where(
+    project: &Project,
+    stage: Stage,
+    shown: Shown<'_>,
+    colors: StitchColors,
+) -> Result<Drawing> {
     let labelled = &project.labelled;
     Ok(match stage {
         Stage::Mesh => mesh_drawing(labelled.mesh(), shown),
         Stage::Labels => label_drawing(labelled, shown),
-        Stage::Stitches => stitch_drawing(&project.fabric()?.stitches, shown),
+        Stage::Stitches => {
+            let stitches = &project.fabric()?.stitches;
+            stitch_drawing(stitches, &stitches.rows(), shown, colors)
+        }
         Stage::Yarn => {
             let fabric = project.fabric()?;
             let yarn = curves(fabric.net(), &fabric.state(), &project.materials);
@@ -65,7 +75,7 @@ pub fn drawing_where(project: &Project, stage: Stage, shown: Shown<'_>) -> Resul
 
 /// The polygons of a mesh, coloured face by face.
 fn faces(mesh: &PolygonMesh, shown: Shown<'_>, color: impl Fn(usize) -> [f32; 3]) -> Faces {
-    let vertices = |f| if shown(f) { mesh.face_vertices(f).map(|v| v.0).collect() } else { Vec::new() };
+    let vertices = |f| if shown(f) { mesh.face_vertices(f).map(|v| v.0).collect() } else { SmallVec::new() };
     Faces {
         positions: mesh.positions().iter().map(|p| p.as_vec3()).collect(),
         polygons: mesh.faces().map(|f| Polygon { vertices: vertices(f), color: color(f.index()) }).collect(),
@@ -135,30 +145,44 @@ fn label_drawing(labelled: &LabelledMesh, shown: Shown<'_>) -> Drawing {
 }
 
 /// Colours of the faces of a stitch mesh with these rows, [face_count]: by kind, odd rows darker.
-pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row]) -> Vec<[f32; 3]> {
+pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row], colors: StitchColors) -> Vec<[f32; 3]> {
     let mut is_odd = vec![false; stitches.mesh().face_count()];
     for row in rows.iter().skip(1).step_by(2) {
         row.faces.iter().for_each(|f| is_odd[f.index()] = true);
     }
-    // A fabric has few kinds of stitches, so their colours are looked up once each.
+    // A fabric has few kinds of stitches, and mostly several of one beside each other, so their colours are looked up once each.
     let mut known: HashMap<&Stitch, [[f32; 3]; 2]> = HashMap::new();
-    let both = |stitch: &Stitch| [0, 1].map(|row| palette::stitch(&stitch.to_string(), row));
-    let colors = stitches.stitches().iter().zip(is_odd);
-    colors
-        .map(|(stitch, odd)| known.entry(stitch).or_insert_with(|| both(stitch))[usize::from(odd)])
-        .collect()
+    let mut last: Option<(&Stitch, [[f32; 3]; 2])> = None;
+    let both = |stitch: &Stitch| [0, 1].map(|row| colors.of(&stitch.to_string(), row));
+    let colors = stitches.stitches().iter().zip(is_odd).map(|(stitch, odd)| {
+        let colors = match last {
+            Some((same, colors)) if same == stitch => colors,
+            _ => *known.entry(stitch).or_insert_with(|| both(stitch)),
+        };
+        last = Some((stitch, colors));
+        colors[usize::from(odd)]
+    });
+    colors.collect()
 }
 
-fn stitch_drawing(stitches: &StitchMesh, shown: Shown<'_>) -> Drawing {
+/// The picture of a stitch mesh with these rows.
+pub fn stitch_drawing(
+    stitches: &StitchMesh,
+    rows: &[Row],
+    shown: Shown<'_>,
+    colors: StitchColors,
+) -> Drawing {
     let mesh = stitches.mesh();
-    let colors = stitch_colors(stitches, &stitches.rows());
-    let lines = shown_edges(mesh, shown).map(|e| {
+    let line = |e| {
         let wale = stitches.is_wale(mesh.edge_sides(e).0);
         edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })
-    });
-    Drawing {
-        faces: faces(mesh, shown, |f| colors[f]),
-        lines: Lines { segments: lines.collect() },
-        ..Drawing::default()
-    }
+    };
+    let (faces, segments) = rayon::join(
+        || {
+            let colors = stitch_colors(stitches, rows, colors);
+            faces(mesh, shown, |f| colors[f])
+        },
+        || shown_edges(mesh, shown).map(line).collect(),
+    );
+    Drawing { faces, lines: Lines { segments }, ..Drawing::default() }
 }

@@ -1,6 +1,7 @@
 //! What to draw, as plain data.
 
 use glam::Vec3;
+use smallvec::SmallVec;
 use stitch_mesh::yarn_curves::YarnCurves;
 
 use crate::{Bounds, Solids};
@@ -9,7 +10,7 @@ use crate::{Bounds, Solids};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// Its corners, indices into [`Faces::positions`], counter-clockwise seen from the front.
-    pub vertices: Vec<u32>,
+    pub vertices: SmallVec<[u32; 4]>,
     /// Colour, linear RGB.
     pub color: [f32; 3],
 }
@@ -127,6 +128,7 @@ impl Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use smallvec::smallvec;
 
     #[test]
     fn a_fan_covers_a_concave_hexagon_once() {
@@ -160,7 +162,7 @@ mod tests {
 
     #[test]
     fn polygons_of_two_corners_have_no_triangles() {
-        let polygons = vec![Polygon { vertices: vec![0, 1], color: [1.0; 3] }];
+        let polygons = vec![Polygon { vertices: smallvec![0, 1], color: [1.0; 3] }];
         let faces = Faces { positions: vec![Vec3::ZERO, Vec3::X], polygons };
         assert_eq!(faces.triangles(0).count(), 0);
     }

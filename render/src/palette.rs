@@ -30,16 +30,55 @@ pub fn row(index: usize) -> [f32; 3] {
     hex(ROWS[index % ROWS.len()]).map(|channel| channel + (1.0 - channel) * ROW_TINT)
 }
 
-/// Colour of a stitch by its symbol (`k`, `p`, `y`, `kp`, `d12k`, …) in a row.
-///
-/// Knit is a calm light sand, purl a clear blue, a yarn-over nearly white like the hole it makes. Decreases lean to red
-/// and increases to green, deeper when more stitches meet, bluer when they are purled.
-pub fn stitch(symbol: &str, row: usize) -> [f32; 3] {
+/// Colours of the kinds of stitches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StitchColors {
+    /// Kinds are told apart by every kind of colour vision. Knit is a calm light sand, purl a clear blue, a yarn-over nearly
+    /// white like the hole it makes. Decreases lean to red and increases to green, deeper when more stitches meet, bluer when
+    /// they are purled.
+    #[default]
+    Distinct,
+    /// A strong hue for each of the seven types that Yuksel et al. colour (Fig. 16): `k`, `p`, `ky`, `yk`, `yky`, `d12k`,
+    /// `d21k`. Their key is a picture without names, so the hues are ours; what they are for is to tell the two slants of a
+    /// decrease and the two sides of a yarn-over apart, which the colours above do not. Other kinds are as above.
+    Paper,
+}
+
+impl StitchColors {
+    /// Both, each with a name and what it is for.
+    pub const ALL: [(Self, &str, &str); 2] = [
+        (Self::Distinct, "Distinct", "Kinds of stitches are told apart by every kind of colour vision"),
+        (
+            Self::Paper,
+            "As in the paper",
+            "A strong hue for each of the seven types of Stitch Meshes, slants apart",
+        ),
+    ];
+
+    /// Colour of a stitch by its symbol (`k`, `p`, `y`, `kp`, `d12k`, …) in a row. Odd rows are darker.
+    pub fn of(self, symbol: &str, row: usize) -> [f32; 3] {
+        let color = match (self, symbol) {
+            (Self::Distinct, _) => distinct(symbol),
+            (_, "k") => 0xf2dc5c,
+            (_, "p") => 0x4a86d8,
+            (_, "ky") => 0x62bf4b,
+            (_, "yk") => 0xf0913a,
+            (_, "yky") => 0xb565cf,
+            (_, "d12k") => 0xe2483d,
+            (_, "d21k") => 0x2fb9ae,
+            (Self::Paper, other) => distinct(other),
+        };
+        let shade = if row % 2 == 1 { ODD_ROW } else { 1.0 };
+        hex(color).map(|channel| channel * shade)
+    }
+}
+
+fn distinct(symbol: &str) -> u32 {
     // What begins from nothing is no decrease.
     let symbol = symbol.strip_prefix("d0").unwrap_or(symbol);
     let actions = || symbol.chars().filter(|c| matches!(c, 'k' | 'p' | 'y'));
     let purled = actions().next() == Some('p');
-    let color = if let Some(order) = symbol.strip_prefix('d') {
+    if let Some(order) = symbol.strip_prefix('d') {
         let stacked = order.chars().filter(char::is_ascii_digit).count();
         match (stacked, purled) {
             (..=2, false) => 0xe39a72,
@@ -58,9 +97,7 @@ pub fn stitch(symbol: &str, row: usize) -> [f32; 3] {
             (3.., true) => 0x468f7c,
             _ => 0xb8b4ab, // nothing this palette knows
         }
-    };
-    let shade = if row % 2 == 1 { ODD_ROW } else { 1.0 };
-    hex(color).map(|channel| channel * shade)
+    }
 }
 
 /// Strain at which the colours of [`strain`] end: stitches a third wider or narrower than the others show at a glance.
@@ -120,6 +157,7 @@ mod tests {
 
     #[test]
     fn kinds_of_stitches_differ() {
+        let stitch = |symbol, row| StitchColors::Distinct.of(symbol, row);
         let kinds = ["k", "p", "y", "kp", "py", "kyk", "pyp", "d12k", "d21p", "d123k", "d312p"];
         for (i, a) in kinds.iter().enumerate() {
             for b in &kinds[..i] {
@@ -128,5 +166,16 @@ mod tests {
         }
         assert!(stitch("k", 1)[0] < stitch("k", 2)[0]);
         assert_eq!(stitch("d12k", 0), stitch("d21k", 0));
+    }
+
+    #[test]
+    fn the_types_of_the_paper_differ_more() {
+        let stitch = |symbol, row| StitchColors::Paper.of(symbol, row);
+        let types = ["k", "p", "ky", "yk", "yky", "d12k", "d21k"];
+        for (i, a) in types.iter().enumerate() {
+            assert!(types[..i].iter().all(|b| distance(stitch(a, 0), stitch(b, 0)) > 0.25), "{a}");
+            assert!(stitch(a, 1)[0] < stitch(a, 0)[0]);
+        }
+        assert_eq!(stitch("kpk", 0), StitchColors::Distinct.of("kpk", 0));
     }
 }

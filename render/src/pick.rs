@@ -88,7 +88,10 @@ mod tests {
         };
         let quad = |i: u32| {
             let start = i % n + i / n * (n + 1);
-            Polygon { vertices: vec![start, start + 1, start + n + 2, start + n + 1], color: [1.0; 3] }
+            Polygon {
+                vertices: smallvec::smallvec![start, start + 1, start + n + 2, start + n + 1],
+                color: [1.0; 3],
+            }
         };
         Faces {
             positions: (0..(n + 1) * (n + 1)).map(position).collect(),

@@ -28,18 +28,43 @@ pub(crate) struct SurfaceMesh {
 }
 
 /// Polygons as they are on the GPU.
-#[derive(Debug, Default)]
+#[derive(Debug, PartialEq)]
 struct Polygons {
     /// Corners with normals.
     corners: Vec<[Vec3; 2]>,
+    /// Corners of triangles.
+    indices: Vec<u32>,
     /// First corner and first index of each polygon, and the end of all.
     starts: Vec<[u32; 2]>,
     colors: Vec<[f32; 3]>,
 }
 
 impl Polygons {
+    /// Some of the polygons of a mesh, each shaded by its mean normal so that a warped polygon still reads as one.
+    fn of(faces: &Faces, range: Range<usize>) -> Self {
+        let mut polygons = Self {
+            corners: Vec::with_capacity(range.len() * 4),
+            indices: Vec::with_capacity(range.len() * 6),
+            starts: Vec::with_capacity(range.len() + 1),
+            colors: faces.polygons[range.clone()].iter().map(|p| p.color).collect(),
+        };
+        polygons.starts.push([0, 0]);
+        for index in range {
+            let normal = faces.triangles(index).map(|[a, b, c]| (b - a).cross(c - a)).sum::<Vec3>();
+            let normal = normal.try_normalize().unwrap_or(Vec3::Z);
+            let first = polygons.corners.len() as u32;
+            polygons.corners.extend(faces.corners(index).map(|position| [position, normal]));
+            if has_mean(faces.polygons[index].vertices.len()) {
+                polygons.corners.push([faces.mean(index), normal]);
+            }
+            polygons.indices.extend(faces.cut(index).flatten().map(|i| first + i as u32));
+            polygons.starts.push([polygons.corners.len() as u32, polygons.indices.len() as u32]);
+        }
+        polygons
+    }
+
     fn count(&self) -> usize {
-        self.starts.len().saturating_sub(1)
+        self.starts.len() - 1
     }
 
     fn corners(&self, polygon: usize) -> &[[Vec3; 2]] {
@@ -50,11 +75,57 @@ impl Polygons {
         self.corners(polygon).iter().map(|[position, _]| *position)
     }
 
+    /// Whether a polygon is one of `faces`.
+    fn is(&self, polygon: usize, faces: &Faces, other: usize) -> bool {
+        let corners = faces.polygons[other].vertices.len();
+        self.colors[polygon] == faces.polygons[other].color
+            && self.corners(polygon).len() == corners + usize::from(has_mean(corners))
+            && self.outline(polygon).zip(faces.corners(other)).all(|(a, b)| a == b)
+    }
+
+    /// Becomes the polygons of `faces`; of those that are as before at the beginning and at the end of the list nothing is worked out
+    /// again. Returns the first that is not.
+    fn become_those_of(&mut self, faces: &Faces, damage: &mut Damage) -> usize {
+        let [n, m] = [self.count(), faces.polygons.len()];
+        let least = n.min(m);
+        let head = (0..least).find(|i| !self.is(*i, faces, *i)).unwrap_or(least);
+        let rest = least - head;
+        let tail = (0..rest).find(|i| !self.is(n - 1 - i, faces, m - 1 - i)).unwrap_or(rest);
+        let others = Self::of(faces, head..m - tail);
+        let alike = |i: usize, j: usize| self.is(head + i, faces, head + j);
+        differences([n - tail - head, others.count()], alike, |only| match only {
+            Only::Before(i) => damage.add(self.outline(head + i), 0.0),
+            Only::After(j) => damage.add(others.outline(j), 0.0),
+        });
+        self.replace(head..n - tail, others);
+        head
+    }
+
+    /// Puts others in place of some polygons.
+    fn replace(&mut self, range: Range<usize>, by: Self) {
+        let [from, to] = [range.start, range.end].map(|p| self.starts[p].map(|n| n as usize));
+        let added = by.starts[by.count()];
+        // Those behind move by as much as there is more now, or less.
+        let moved = |n: u32, i: usize| n + from[i] as u32 + added[i] - to[i] as u32;
+        self.indices[to[1]..].iter_mut().for_each(|n| *n = moved(*n, 0));
+        self.starts[range.end..].iter_mut().for_each(|s| *s = [moved(s[0], 0), moved(s[1], 1)]);
+        self.corners.splice(from[0]..to[0], by.corners);
+        self.indices.splice(from[1]..to[1], by.indices.iter().map(|n| n + from[0] as u32));
+        let starts = by.starts[..by.starts.len() - 1].iter();
+        self.starts.splice(range.clone(), starts.map(|s| [s[0] + from[0] as u32, s[1] + from[1] as u32]));
+        self.colors.splice(range, by.colors);
+    }
+
     /// Colour and opacity of the corners of some polygons.
     fn corner_colors(&self, polygons: Range<usize>) -> Vec<Vec4> {
         let each = polygons.map(|p| (Vec3::from(self.colors[p]).extend(1.0), self.corners(p).len()));
         each.flat_map(|(color, n)| std::iter::repeat_n(color, n)).collect()
     }
+}
+
+/// Whether a polygon of so many corners has their mean as one more: see [`Faces::cut`].
+fn has_mean(corners: usize) -> bool {
+    corners > 4
 }
 
 impl SurfaceMesh {
@@ -64,52 +135,21 @@ impl SurfaceMesh {
             colors: GrowingBuffer::new("colours of corners", wgpu::BufferUsages::VERTEX),
             indices: GrowingBuffer::new("triangles", wgpu::BufferUsages::INDEX),
             count: 0,
-            now: Polygons::default(),
+            now: Polygons::of(&Faces::default(), 0..0),
         }
     }
 
-    /// Replaces the triangles by those of polygons, each shaded by its mean normal so that a warped polygon still reads
-    /// as one.
+    /// Replaces the triangles by those of polygons. Those at the beginning that are as before are not written again.
     pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces, damage: &mut Damage) -> Result<(), RenderError> {
-        let mut now = Polygons {
-            corners: Vec::with_capacity(faces.polygons.len() * 4),
-            starts: Vec::with_capacity(faces.polygons.len() + 1),
-            colors: faces.polygons.iter().map(|p| p.color).collect(),
-        };
-        let mut indices: Vec<u32> = Vec::with_capacity(faces.polygons.len() * 6);
-        now.starts.push([0, 0]);
-        for (index, polygon) in faces.polygons.iter().enumerate() {
-            let normal = faces.triangles(index).map(|[a, b, c]| (b - a).cross(c - a)).sum::<Vec3>();
-            let normal = normal.try_normalize().unwrap_or(Vec3::Z);
-            let first = now.corners.len() as u32;
-            now.corners.extend(faces.corners(index).map(|position| [position, normal]));
-            if polygon.vertices.len() > 4 {
-                now.corners.push([faces.mean(index), normal]);
-            }
-            indices.extend(faces.cut(index).flatten().map(|i| first + i as u32));
-            now.starts.push([now.corners.len() as u32, indices.len() as u32]);
-        }
-        let before = std::mem::replace(&mut self.now, now);
+        let head = self.now.become_those_of(faces, damage);
         let now = &self.now;
-        let mut same = before.count().min(now.count());
-        let alike =
-            |i: usize, j: usize| before.colors[i] == now.colors[j] && before.corners(i) == now.corners(j);
-        differences([before.count(), now.count()], alike, |only| match only {
-            Only::Before(i) => {
-                damage.add(before.outline(i), 0.0);
-                same = same.min(i);
-            }
-            Only::After(j) => {
-                damage.add(now.outline(j), 0.0);
-                same = same.min(j);
-            }
-        });
-        let [corner, index] = now.starts[same].map(|n| n as usize);
+        let [corner, index] = now.starts[head].map(|n| n as usize);
         let limit = gpu.device.limits().max_buffer_size;
-        self.count = indices.len() as u32;
+        self.count = now.indices.len() as u32;
         let shape = bytemuck::cast_slice(&now.corners);
         self.shape.write_from(gpu, shape, corner * size_of::<[Vec3; 2]>(), limit)?;
-        self.indices.write_from(gpu, bytemuck::cast_slice(&indices), index * size_of::<u32>(), limit)?;
+        let indices = bytemuck::cast_slice(&now.indices);
+        self.indices.write_from(gpu, indices, index * size_of::<u32>(), limit)?;
         let colors = now.corner_colors(0..now.count());
         self.colors.write_from(gpu, bytemuck::cast_slice(&colors), corner * size_of::<Vec4>(), limit)
     }
@@ -234,6 +274,41 @@ impl SurfacePipelines {
             pass.set_vertex_buffer(1, colors.slice(..));
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
             ranges.for_each(|range| pass.draw_indexed(range, 0, 0..1));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Polygon;
+
+    /// Polygons of these numbers of corners on a spiral, so that no two are alike.
+    fn faces(corners: &[usize]) -> Faces {
+        let mut faces = Faces::default();
+        for (i, n) in corners.iter().enumerate() {
+            let first = faces.positions.len() as u32;
+            let middle = Vec3::new(i as f32, (*n * *n) as f32, 0.0);
+            let around = |k: usize| Vec3::from((glam::Vec2::from_angle(k as f32 / *n as f32 * 6.2), 0.0));
+            faces.positions.extend((0..*n).map(|k| middle + around(k)));
+            let vertices = (first..first + *n as u32).collect();
+            faces.polygons.push(Polygon { vertices, color: [0.5; 3] });
+        }
+        faces
+    }
+
+    #[test]
+    fn what_is_kept_and_what_is_new_make_the_same_polygons() {
+        let lists: [&[usize]; 7] =
+            [&[4, 4, 4, 4], &[4, 5, 4, 4], &[4, 6, 4], &[4, 6, 0, 4, 4], &[], &[5, 3], &[4, 4, 4, 4]];
+        let mut polygons = Polygons::of(&Faces::default(), 0..0);
+        for list in lists {
+            let faces = faces(list);
+            let mut damage = Damage::none();
+            polygons.become_those_of(&faces, &mut damage);
+            assert_eq!(polygons, Polygons::of(&faces, 0..list.len()), "{list:?}");
+            assert!(!damage.is_none());
+            assert_eq!(polygons.become_those_of(&faces, &mut Damage::none()), list.len(), "all as before");
         }
     }
 }

@@ -28,7 +28,7 @@ fn square(center: Vec3, color: [f32; 3]) -> Faces {
     let corners = [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)];
     Faces {
         positions: corners.map(|(x, y)| center + Vec3::new(x, y, 0.0)).to_vec(),
-        polygons: vec![Polygon { vertices: vec![0, 1, 2, 3], color }],
+        polygons: vec![Polygon { vertices: smallvec::smallvec![0, 1, 2, 3], color }],
     }
 }
 
@@ -207,9 +207,10 @@ fn stitch_chart() -> Drawing {
         let start = row * (COLUMNS + 1) + column;
         let corners = [start, start + 1, start + COLUMNS + 2, start + COLUMNS + 1];
         let symbol = symbols[((column + row / 4) % 10) as usize];
-        faces
-            .polygons
-            .push(Polygon { vertices: corners.to_vec(), color: palette::stitch(symbol, row as usize) });
+        faces.polygons.push(Polygon {
+            vertices: corners.as_slice().into(),
+            color: palette::StitchColors::Distinct.of(symbol, row as usize),
+        });
         let edge = |i: usize| [corners[i], corners[(i + 1) % 4]].map(|v| faces.positions[v as usize]);
         lines.segments.push(Segment { ends: edge(0), color: palette::COURSE_EDGE, width: 1.5 });
         lines.segments.push(Segment { ends: edge(3), color: palette::WALE_EDGE, width: 2.5 });

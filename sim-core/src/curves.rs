@@ -48,16 +48,21 @@ pub(crate) fn string_together(
         let mut points = Vec::with_capacity(2 * yarn.visits.len());
         let mut dyes = Vec::with_capacity(2 * yarn.visits.len());
         let mut drawn = Vec::with_capacity(2 * yarn.visits.len());
+        let mut visits = Vec::with_capacity(2 * yarn.visits.len());
         for visit in yarn.visits.clone().map(VisitId) {
             points.extend(at(visit));
-            let Some(next) = net.next(visit) else { continue };
-            points.extend(middle(visit, next));
+            let next = net.next(visit);
+            points.extend(next.and_then(|next| middle(visit, next)));
+            visits.resize(points.len(), visit);
+            if next.is_none() {
+                continue;
+            }
             dyes.resize(points.len(), net.visits[visit.index()].dye);
             drawn.resize(points.len(), radii[visit.index()] as f32);
         }
         dyes.resize(points.len(), dyes.last().copied().unwrap_or_default());
         drawn.resize(points.len(), drawn.last().copied().unwrap_or(materials.base.drawn_radius as f32));
-        YarnCurve { points, closed: yarn.period.is_some(), radii: drawn, dyes }
+        YarnCurve { points, closed: yarn.period.is_some(), radii: drawn, dyes, visits }
     };
     YarnCurves { curves: net.yarns.iter().map(curve).collect() }
 }

@@ -71,3 +71,78 @@ pub(crate) fn draw_back(model: &Model, masses: &[f64], state: &YarnState, next: 
         *v += *shift / h;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::unit_hash;
+    use crate::testing::swatch_model;
+
+    const STEP: f64 = 0.01;
+
+    /// A swatch, its state, and that state moved on by velocities of up to `speed` in all directions.
+    fn moved_on(speed: f64) -> (Model, Vec<f64>, YarnState, YarnState) {
+        let model = swatch_model(5, 4);
+        let state = model.net.laid_state();
+        let mut next = state.clone();
+        let number = |i: usize| 2.0 * unit_hash(i as u64) - 1.0;
+        for (i, (x, v)) in next.position.iter_mut().zip(&mut next.velocity).enumerate() {
+            *v = speed * DVec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+            *x += STEP * *v;
+        }
+        let masses = (0..state.position.len()).map(|i| 1e-6 * (1.0 + unit_hash(1000 + i as u64))).collect();
+        (model, masses, state, next)
+    }
+
+    /// Greatest part by which a segment is longer than the linear step reckons with.
+    fn excess(model: &Model, state: &YarnState, linear: &YarnState, next: &YarnState) -> f64 {
+        let of = |nodes: [usize; 2]| {
+            let span = |s: &YarnState| s.position[nodes[1]] - s.position[nodes[0]];
+            let (r, moved) = (span(state), span(linear) - span(state));
+            let reckoned = (r.length() + r.normalize().dot(moved)).max(LEAST * r.length());
+            span(next).length() / reckoned - 1.0
+        };
+        model.segments.iter().map(|s| of(s.stencil.nodes.map(|n| n.index()))).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn segments_that_turn_come_back_to_the_length_that_was_reckoned_with() {
+        let (model, masses, state, linear) = moved_on(0.03);
+        let mut next = linear.clone();
+        draw_back(&model, &masses, &state, &mut next, STEP);
+        let (before, after) =
+            (excess(&model, &state, &linear, &linear), excess(&model, &state, &linear, &next));
+        assert!(before > 0.05 && after < 0.1 * before, "{before} {after}");
+        for i in 0..state.position.len() {
+            let flown = (next.position[i] - state.position[i]) / STEP;
+            assert!(flown.distance(next.velocity[i]) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn momentum_and_angular_momentum_are_kept() {
+        let (model, masses, state, linear) = moved_on(0.03);
+        let mut next = linear.clone();
+        draw_back(&model, &masses, &state, &mut next, STEP);
+        // About the places before: what is taken off, over all nodes, neither pushes nor turns.
+        let sum = |of: &dyn Fn(usize) -> DVec3| (0..masses.len()).map(|i| masses[i] * of(i)).sum::<DVec3>();
+        let change = |i: usize| next.velocity[i] - linear.velocity[i];
+        let moved: f64 = (0..masses.len()).map(|i| masses[i] * change(i).length()).sum();
+        assert!(moved > 0.0 && sum(&change).length() < 1e-12 * moved);
+        // Sweeps change places in between, so angular momentum is kept to the size of these changes.
+        let turn = sum(&|i| next.position[i].cross(change(i))).length();
+        assert!(turn < 0.01 * moved * 0.01, "{turn:e} of {moved:e}");
+    }
+
+    #[test]
+    fn what_is_stretched_and_what_is_carried_stays() {
+        let (model, masses, state, _) = moved_on(0.0);
+        let mut next = state.clone();
+        for x in &mut next.position {
+            *x = 1.1 * *x + DVec3::new(0.0, 0.2, 0.1);
+        }
+        let expected = next.clone();
+        draw_back(&model, &masses, &state, &mut next, STEP);
+        assert_eq!(next, expected);
+    }
+}

@@ -28,7 +28,7 @@ pub struct Wales {
 }
 
 /// Faces joined by wale edges, left to right.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Row {
     /// Faces, left to right as seen from the front.
     pub faces: Vec<FaceId>,

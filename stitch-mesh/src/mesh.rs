@@ -10,7 +10,6 @@ pub use crate::validate::MeshError;
 use crate::validate::{MeshProblem, area_vector, check, position_problems};
 use glam::DVec3;
 use rayon::prelude::*;
-use smallvec::SmallVec;
 use std::ops::Range;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,30 +35,23 @@ pub struct PolygonMesh {
     corners: Corners,
 }
 
-impl PolygonMesh {
-    /// Builds the mesh from vertex positions [m] and faces (vertex indices, counter-clockwise seen from the front).
-    ///
-    /// # Errors
-    /// Everything that [`crate::validate::validate`] finds.
-    pub fn new(positions: Vec<DVec3>, faces: &[impl AsRef<[u32]> + Sync]) -> Result<Self, MeshError> {
-        let corners = check(&positions, faces).map_err(MeshError)?;
-        Ok(Self::build(positions, faces, corners))
-    }
+/// The half-edges of faces: a mesh without its vertices.
+struct Sides {
+    half_edges: Vec<HalfEdge>,
+    edges: Vec<HalfEdgeId>,
+    face_starts: Vec<u32>,
+    border_from: Vec<Option<HalfEdgeId>>,
+}
 
-    /// The mesh without faces, where nothing is knitted.
-    pub(crate) fn empty() -> Self {
-        let faces = [[0; 0]; 0];
-        Self::build(Vec::new(), &faces, Corners::new(0, &faces))
-    }
-
-    /// Builds the mesh of faces in which nothing is wrong.
-    fn build(positions: Vec<DVec3>, faces: &[impl AsRef<[u32]>], corners: Corners) -> Self {
+impl Sides {
+    /// What comes of faces in which something is wrong is no mesh.
+    fn of(vertex_count: usize, faces: &[impl AsRef<[u32]>], corners: &Corners) -> Self {
         let count = faces.iter().map(|f| f.as_ref().len()).sum();
         let mut half_edges: Vec<HalfEdge> = Vec::with_capacity(count);
         let mut edges: Vec<HalfEdgeId> = Vec::with_capacity(count / 2);
         let mut face_starts = Vec::with_capacity(faces.len() + 1);
         face_starts.push(0);
-        let mut border_from = vec![None; positions.len()];
+        let mut border_from = vec![None; vertex_count];
         for (face, vertices) in faces.iter().map(AsRef::as_ref).enumerate() {
             for (i, &a) in vertices.iter().enumerate() {
                 let this = HalfEdgeId::new(half_edges.len());
@@ -80,7 +72,31 @@ impl PolygonMesh {
             }
             face_starts.push(half_edges.len() as u32);
         }
-        Self { positions, half_edges, edges, face_starts, border_from, corners }
+        Self { half_edges, edges, face_starts, border_from }
+    }
+
+    fn with(self, positions: Vec<DVec3>, corners: Corners) -> PolygonMesh {
+        let Self { half_edges, edges, face_starts, border_from } = self;
+        PolygonMesh { positions, half_edges, edges, face_starts, border_from, corners }
+    }
+}
+
+impl PolygonMesh {
+    /// Builds the mesh from vertex positions [m] and faces (vertex indices, counter-clockwise seen from the front).
+    ///
+    /// # Errors
+    /// Everything that [`crate::validate::validate`] finds.
+    pub fn new(positions: Vec<DVec3>, faces: &[impl AsRef<[u32]> + Sync]) -> Result<Self, MeshError> {
+        let build = |corners: &Corners| Sides::of(positions.len(), faces, corners);
+        let (corners, sides) = check(&positions, faces, build).map_err(MeshError)?;
+        Ok(sides.with(positions, corners))
+    }
+
+    /// The mesh without faces, where nothing is knitted.
+    pub(crate) fn empty() -> Self {
+        let faces = [[0; 0]; 0];
+        let corners = Corners::new(0, &faces);
+        Sides::of(0, &faces, &corners).with(Vec::new(), corners)
     }
 
     /// The same mesh with its vertices at other positions [m]. All ids survive.
@@ -312,8 +328,7 @@ impl PolygonMesh {
 
     /// Area vector of a face (Newell): its length is the area [m²], its direction the front.
     pub fn face_area_vector(&self, face: FaceId) -> DVec3 {
-        let points: SmallVec<[DVec3; 8]> = self.face_vertices(face).map(|v| self.position(v)).collect();
-        area_vector(&points)
+        area_vector(self.face_vertices(face).map(|v| self.position(v)))
     }
 
     /// Unit normals at the vertices, area-weighted, [vertex_count].

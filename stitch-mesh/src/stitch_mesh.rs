@@ -323,16 +323,22 @@ impl StitchMesh {
                 rows.push(row);
             }
         }
+        // Which row lies on which, each pair once for every run of faces in which they meet.
+        let mut stacked: Vec<[usize; 2]> = Vec::new();
+        for (r, row) in rows.iter().enumerate() {
+            let below = row.faces.iter().flat_map(|f| self.below(*f)).map(|f| [row_of[f.index()], r]);
+            stacked.extend(below);
+            stacked.dedup();
+        }
         // Height of a row: one more than the highest below it. A garment knitted in a circle (a Möbius band of rows) has no
         // lowest row; going round more often than there are rows says so, and the heights so far are as good as any.
         let mut height = vec![0usize; rows.len()];
         for _ in 0..rows.len() {
             let mut changed = false;
-            for (r, row) in rows.iter().enumerate() {
-                let below =
-                    row.faces.iter().flat_map(|f| self.below(*f)).map(|f| height[row_of[f.index()]] + 1);
-                if let Some(h) = below.max().filter(|h| *h > height[r] && *h <= rows.len()) {
-                    height[r] = h;
+            for [below, r] in &stacked {
+                let h = height[*below] + 1;
+                if h > height[*r] && h <= rows.len() {
+                    height[*r] = h;
                     changed = true;
                 }
             }
@@ -345,7 +351,7 @@ impl StitchMesh {
         let mut sorted: Vec<Row> = Vec::with_capacity(rows.len());
         let mut begins = vec![false; self.mesh.face_count()];
         for r in order {
-            let mut row = rows[r].clone();
+            let mut row = std::mem::take(&mut rows[r]);
             if row.closed
                 && let Some(start) = row.faces.iter().position(|f| {
                     let mut below = self.below(*f);
@@ -364,24 +370,19 @@ impl StitchMesh {
     pub fn row_of(&self, face: FaceId) -> Row {
         let right = |f: FaceId| self.mesh.face_across(self.right(f));
         let left = |f: FaceId| self.mesh.face_across(self.left(f));
-        let mut first = face;
-        while let Some(before) = left(first) {
-            if before == face {
-                first = face;
-                break;
-            }
-            first = before;
-        }
-        let mut faces = vec![first];
-        let mut at = first;
+        let mut faces = vec![face];
+        let mut at = face;
         while let Some(next) = right(at) {
-            if next == first {
+            if next == face {
                 return Row { faces, closed: true };
             }
             faces.push(next);
             at = next;
         }
-        Row { faces, closed: false }
+        let mut before: Vec<FaceId> = std::iter::successors(left(face), |f| left(*f)).collect();
+        before.reverse();
+        before.append(&mut faces);
+        Row { faces: before, closed: false }
     }
 
     /// Number of loops: top edges of all faces.

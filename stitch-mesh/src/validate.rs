@@ -87,14 +87,16 @@ fn describe(problems: &[MeshProblem]) -> String {
 
 /// Everything wrong with a mesh given as positions [m] and faces. Empty when [`crate::mesh::PolygonMesh::new`] succeeds.
 pub fn validate(positions: &[DVec3], faces: &[impl AsRef<[u32]> + Sync]) -> Vec<MeshProblem> {
-    check(positions, faces).err().unwrap_or_default()
+    check(positions, faces, |_| ()).err().unwrap_or_default()
 }
 
-/// The corners of a mesh in which nothing is wrong, or else all that is.
-pub(crate) fn check(
+/// The corners of a mesh, and what `work` has made of them while the mesh was looked through, if nothing is wrong with it; or else
+/// all that is. The work has to end whatever is wrong, short of vertices that do not exist.
+pub(crate) fn check<T: Send>(
     positions: &[DVec3],
     faces: &[impl AsRef<[u32]> + Sync],
-) -> Result<Corners, Vec<MeshProblem>> {
+    work: impl FnOnce(&Corners) -> T + Send,
+) -> Result<(Corners, T), Vec<MeshProblem>> {
     let mut problems = Vec::new();
     if faces.is_empty() {
         problems.push(MeshProblem::Empty);
@@ -110,15 +112,21 @@ pub(crate) fn check(
     if !problems.is_empty() {
         return Err(problems); // what follows looks vertices up and measures them
     }
-    problems.extend(degenerate_faces(positions, faces));
-    let corners = Corners::new(positions.len(), faces);
-    if corners.has_doubles() {
-        problems.extend(edge_problems(faces));
-    }
-    if problems.is_empty() {
-        problems = vertex_problems(positions.len(), &corners);
-    }
-    if problems.is_empty() { Ok(corners) } else { Err(problems) }
+    let (degenerate, corners) =
+        rayon::join(|| degenerate_faces(positions, faces), || Corners::new(positions.len(), faces));
+    problems.extend(degenerate);
+    let (made, ()) = rayon::join(
+        || work(&corners),
+        || {
+            if corners.has_doubles() {
+                problems.extend(edge_problems(faces));
+            }
+            if problems.is_empty() {
+                problems = vertex_problems(positions.len(), &corners);
+            }
+        },
+    );
+    if problems.is_empty() { Ok((corners, made)) } else { Err(problems) }
 }
 
 /// What can be wrong with a mesh after its vertices have moved.
@@ -152,13 +160,15 @@ fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
     let points: SmallVec<[DVec3; 8]> = vertices.iter().map(|v| positions[*v as usize]).collect();
     let perimeter: f64 = (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum();
     // A face thinner than a millionth of its outline cannot hold a stitch.
-    (area_vector(&points).length() <= 1e-6 * perimeter * perimeter).then_some("it has no area")
+    (area_vector(points.iter().copied()).length() <= 1e-6 * perimeter * perimeter).then_some("it has no area")
 }
 
 /// Area vector of a polygon (Newell's formula, about its first point so that far-off meshes keep their digits) [m²].
-pub fn area_vector(points: &[DVec3]) -> DVec3 {
-    let Some(&origin) = points.first() else { return DVec3::ZERO };
-    points.windows(2).map(|w| (w[0] - origin).cross(w[1] - origin)).sum::<DVec3>() * 0.5
+pub fn area_vector(mut points: impl Iterator<Item = DVec3>) -> DVec3 {
+    let (Some(origin), Some(second)) = (points.next(), points.next()) else { return DVec3::ZERO };
+    let mut before = second - origin;
+    let twice = points.map(|p| std::mem::replace(&mut before, p - origin).cross(p - origin)).sum::<DVec3>();
+    twice * 0.5
 }
 
 fn edge_problems(faces: &[impl AsRef<[u32]>]) -> Vec<MeshProblem> {

@@ -5,6 +5,7 @@
 //! the same spline on the GPU.
 
 use crate::dye::Dye;
+use crate::ids::VisitId;
 use glam::Vec3;
 
 /// One drawn yarn.
@@ -18,6 +19,9 @@ pub struct YarnCurve {
     pub radii: Vec<f32>,
     /// Colour of the yarn from each control point to the next, [point_count].
     pub dyes: Vec<Dye>,
+    /// The visit at which each control point is, or which it follows, in the net that the curve was made of; counted from 0
+    /// where there was none, [point_count].
+    pub visits: Vec<VisitId>,
 }
 
 /// All yarns of a fabric.
@@ -30,12 +34,32 @@ pub struct YarnCurves {
 impl YarnCurve {
     /// A yarn of one colour and thickness.
     pub fn new(points: Vec<Vec3>, closed: bool, radius: f32, dye: Dye) -> Self {
-        Self { radii: vec![radius; points.len()], dyes: vec![dye; points.len()], points, closed }
+        let visits = (0..points.len()).map(VisitId::new).collect();
+        Self { radii: vec![radius; points.len()], dyes: vec![dye; points.len()], visits, points, closed }
     }
 
     /// The radius at its thickest place [m].
     pub fn greatest_radius(&self) -> f32 {
         self.radii.iter().copied().fold(0.0, f32::max)
+    }
+
+    /// What is left of a curve where some of its control points are taken out with the yarn beside them: curves of those that
+    /// follow each other.
+    pub fn without(&self, gone: impl Fn(VisitId) -> bool) -> Vec<Self> {
+        let n = self.points.len();
+        let Some(first) = (0..n).find(|i| gone(self.visits[*i])) else { return vec![self.clone()] };
+        // A ring is opened where something goes; an open curve begins where it began.
+        let order: Vec<usize> =
+            if self.closed { (first..n).chain(0..first).collect() } else { (0..n).collect() };
+        let kept = order.split(|i| gone(self.visits[*i])).filter(|run| run.len() > 1);
+        let curve = |run: &[usize]| Self {
+            points: run.iter().map(|i| self.points[*i]).collect(),
+            closed: false,
+            radii: run.iter().map(|i| self.radii[*i]).collect(),
+            dyes: run.iter().map(|i| self.dyes[*i]).collect(),
+            visits: run.iter().map(|i| self.visits[*i]).collect(),
+        };
+        kept.map(curve).collect()
     }
 
     /// Number of spans: pieces of curve between neighbouring control points.
@@ -109,6 +133,21 @@ mod tests {
         for (i, p) in points.iter().enumerate() {
             assert!(drawn[4 * i].distance(*p) < 1e-6);
         }
+    }
+
+    #[test]
+    fn a_ring_is_opened_where_yarn_is_taken_out() {
+        let points: Vec<Vec3> = (0..6).map(|i| Vec3::X * i as f32).collect();
+        let left = |closed, gone: &[u32]| -> Vec<Vec<f32>> {
+            let curve = YarnCurve::new(points.clone(), closed, 0.1, Dye::UNDYED);
+            let left = curve.without(|v| gone.contains(&v.0));
+            assert!(gone.is_empty() || left.iter().all(|c| !c.closed && c.radii.len() == c.points.len()));
+            left.iter().map(|c| c.points.iter().map(|p| p.x).collect()).collect()
+        };
+        assert_eq!(left(true, &[2]), [[3.0, 4.0, 5.0, 0.0, 1.0]]);
+        assert_eq!(left(false, &[2]), [vec![0.0, 1.0], vec![3.0, 4.0, 5.0]]);
+        assert_eq!(left(false, &[1, 4]), [[2.0, 3.0]], "single points are no yarn");
+        assert_eq!(left(true, &[])[0].len(), 6);
     }
 
     #[test]

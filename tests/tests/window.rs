@@ -191,3 +191,70 @@ fn what_comes_with_the_program_is_begun_from_a_menu() {
     let path = window.harness.get_by_label("Path").accesskit_node().value();
     assert_eq!(path.as_deref(), Some("cowl.purl"), "where it will be saved");
 }
+
+#[test]
+fn yarn_of_hidden_stitches_is_hidden() {
+    let mut window = Window::new(knitted());
+    window.press("Yarn");
+    window.press("Front");
+    window.wait("yarn", |e| e.yarn().is_some());
+    let fabric = window.editor().project().fabric().unwrap().clone();
+    let state = fabric.state();
+    let row = fabric.stitches.rows()[2].faces.clone();
+    let place = |face: FaceId| {
+        let nodes = fabric.net().nodes.iter().zip(&state.position).filter(|(n, _)| n.face == Some(face));
+        let nodes: Vec<DVec3> = nodes.map(|(_, p)| *p).collect();
+        nodes.iter().sum::<DVec3>() / nodes.len() as f64
+    };
+    let at = window.on_screen(place(row[2]), state.position.iter().copied());
+    window.press("Row");
+    let before = window.keep("yarn");
+    window.click(at, Modifiers::NONE);
+    assert_eq!(window.selected().len(), row.len());
+    window.key(Modifiers::NONE, Key::H);
+    assert!(window.selected().is_empty());
+    let hidden = window.keep("yarn-hidden");
+    window.click(at, Modifiers::NONE);
+    assert!(window.selected().is_empty(), "there is nothing to click");
+    // Where the row was there is the ground, which changes little along a line.
+    let ground = *hidden.get_pixel(at.x as u32, at.y as u32);
+    let [bare, covered] = [&hidden, &before].map(|picture| {
+        let across = (at.x as u32 - 150)..(at.x as u32 + 150);
+        let near = |x: &u32| {
+            let pixel = picture.get_pixel(*x, at.y as u32);
+            (0..3).all(|i| pixel.0[i].abs_diff(ground.0[i]) < 12)
+        };
+        across.filter(near).count()
+    });
+    assert!(bare == 300 && covered < 200, "{bare} and {covered} of 300 pixels are bare");
+    window.key(Modifiers::ALT, Key::H);
+    assert!(!window.says("hidden)") && window.keep("yarn-again") == before);
+}
+
+#[test]
+fn scissors_cut_the_yarn_in_front() {
+    let mut window = Window::new(knitted());
+    window.press("Yarn");
+    window.press("Front");
+    window.wait("yarn", |e| e.yarn().is_some());
+    let fabric = window.editor().project().fabric().unwrap().clone();
+    let state = fabric.state();
+    let face = fabric.stitches.rows()[3].faces[4];
+    let node = fabric.net().nodes.iter().position(|n| n.face == Some(face)).unwrap();
+    let at = window.on_screen(state.position[node], state.position.iter().copied());
+    window.key(Modifiers::SHIFT, Key::X);
+    window.click(at, Modifiers::NONE);
+    let after = window.editor().project().fabric().unwrap().clone();
+    assert_eq!(after.net().yarns.len(), fabric.net().yarns.len() + 1);
+    let [sim_core::Operation::Cut(visit)] = after.surgery.operations[..] else { panic!("one cut") };
+    let ends = [Some(visit), fabric.net().next(visit)].map(|v| fabric.net().visits[v.unwrap().index()].node);
+    let front = fabric.net().nodes[node].visits[0];
+    assert!(ends.contains(&fabric.net().visits[front.index()].node), "at the node under the pointer");
+    assert!([Some(visit), fabric.net().next(visit)].contains(&Some(front)), "of the yarn in front");
+    window.keep("cut");
+    let corner = window.viewport().min + egui::vec2(8.0, 8.0);
+    window.click(corner, Modifiers::NONE);
+    assert!(window.says("there is no yarn under the scissors"));
+    window.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.editor().project().fabric().unwrap().net().yarns.len(), fabric.net().yarns.len());
+}

@@ -164,3 +164,89 @@ fn structure_changes_at_one_edge() {
     window.press("Divide stitch");
     assert_eq!(faces(&window), before + 1);
 }
+
+/// Writes into a text field in place of what stands there.
+fn write(window: &mut Window, field: &str, text: &str) {
+    use egui_kittest::kittest::Queryable as _;
+    window.harness.get_by_label(field).focus();
+    window.harness.step();
+    window.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.harness.step();
+    window.harness.get_by_label(field).type_text(text);
+    window.rest();
+}
+
+#[test]
+fn strands_of_a_cable_are_written_out() {
+    let (mut window, rows) = fabric();
+    window.key(NONE, Key::Num1);
+    for (i, face) in rows[3][2..7].iter().enumerate() {
+        window.click_stitch(*face, Some(0), if i == 0 { NONE } else { Modifiers::SHIFT });
+    }
+    let cables = |window: &Window| {
+        let fabric = window.editor().project().fabric().unwrap();
+        let of = |c: &stitch_mesh::cable::Cable| (c.strands.clone(), c.order.clone(), c.front.clone());
+        fabric.stitches.cables().iter().map(of).collect::<Vec<_>>()
+    };
+    window.press("Finish");
+    for (loops, above, front) in [("3/2", "BA", "AB"), ("2/1/2", "CBA", "ACB")] {
+        write(&mut window, "Strands", loops);
+        write(&mut window, "Above", above);
+        write(&mut window, "In front", front);
+        window.press("Cross strands");
+        assert!(!window.says("Cross strands:"));
+    }
+    assert_eq!(cables(&window), [(vec![2, 1, 2], vec![2, 1, 0], vec![0, 2, 1])], "in place of the first");
+    window.keep("plait");
+    window.press("Yarn");
+    window.press("Front");
+    window.keep("plait-yarn");
+    window.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(cables(&window), [(vec![3, 2], vec![1, 0], vec![0, 1])]);
+    window.press("Finish");
+    write(&mut window, "Strands", "2/2");
+    window.press("Cross strands");
+    assert!(window.says("the strands have 4 loops, but the cable lies on 5 course edges"));
+}
+
+#[test]
+fn stitches_have_the_colours_that_are_chosen() {
+    let (mut window, rows) = fabric();
+    window.click_stitch(rows[2][3], Some(1), Modifiers::ALT);
+    window.key(NONE, Key::P);
+    window.key(NONE, Key::Escape);
+    let before = window.keep("colours-distinct");
+    window.press("⚙ Settings");
+    window.press("As in the paper");
+    window.key(NONE, Key::Escape);
+    let paper = window.keep("colours-paper");
+    assert!(paper != before);
+    window.press("⚙ Settings");
+    window.press("Distinct");
+    window.key(NONE, Key::Escape);
+    assert!(window.keep("colours-distinct") == before);
+}
+
+#[test]
+fn single_stitches_are_wrapped_otherwise() {
+    use egui_kittest::kittest::Queryable as _;
+    let (mut window, rows) = fabric();
+    window.press("Finish");
+    window.click_stitch(rows[2][3], None, NONE);
+    window.harness.get_by_label("Modulus").click();
+    window.harness.step();
+    window.harness.get_by_label("Modulus").type_text("0.5");
+    window.key(NONE, Key::Enter);
+    window.press("Wrap");
+    let wrapping = |window: &Window, face: u32| {
+        window.editor().project().fabric().unwrap().stitches.wrappings()[face as usize]
+    };
+    let of_material = wrapping(&window, rows[2][4]);
+    assert_eq!((wrapping(&window, rows[2][3]).modulus, wrapping(&window, rows[2][3]).angle), (0.5, None));
+    assert_eq!((of_material.modulus, of_material.angle), (1.0, None));
+    window.press("Angle of the material");
+    window.press("Wrap");
+    window.keep("wrapping");
+    let right = std::f64::consts::FRAC_PI_2;
+    assert!(wrapping(&window, rows[2][3]).angle.is_some_and(|a| (a - right).abs() < 1e-12));
+}

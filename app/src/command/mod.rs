@@ -280,6 +280,11 @@ pub enum Command {
         /// The faces.
         faces: Vec<u32>,
     },
+    /// Cuts the yarn between two visits.
+    CutYarnAt {
+        /// The first of them, as the yarn is numbered now.
+        visit: u32,
+    },
     /// Lets the loops of some stitches slip off what holds them, so that they may run.
     DropLoops {
         /// The faces.
@@ -390,6 +395,7 @@ impl Command {
                 project.fabric = project.fabric.as_ref().map(Fabric::laid_anew);
             }
             Self::CutYarn { faces } => surgery::cut(project, faces)?,
+            Self::CutYarnAt { visit } => surgery::cut_at(project, *visit)?,
             Self::DropLoops { faces } => surgery::drop(project, faces)?,
             Self::Compensate { text } => rest_shape::compensate(project, text.as_deref())?,
             Self::RelaxMesh { aspect, fill, surface } => {

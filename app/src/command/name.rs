@@ -85,6 +85,7 @@ impl Command {
             Self::ClearMaterial { color } => format!("Yarn {color} as the rest"),
             Self::SetScene { .. } => "Change scene".into(),
             Self::CutYarn { faces } => format!("Cut the yarn of {}", many(faces.len(), "stitch")),
+            Self::CutYarnAt { .. } => "Cut yarn".into(),
             Self::DropLoops { faces } => format!("Drop {}", many(faces.len(), "stitch")),
             Self::Hold { faces } => format!("Hold {}", many(faces.len(), "stitch")),
             Self::LetGo => "Let go".into(),

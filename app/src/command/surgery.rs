@@ -12,6 +12,14 @@ pub(super) fn cut(project: &mut Project, faces: &[u32]) -> Result<()> {
     each_loop(project, faces, |head| Operation::Cut(VisitId((head.start + head.end - 1) / 2)))
 }
 
+/// Cuts the yarn between a visit and the next one.
+pub(super) fn cut_at(project: &mut Project, visit: u32) -> Result<()> {
+    let mut fabric = project.fabric()?.clone();
+    project.scene.follow(&fabric.operate(Operation::Cut(VisitId(visit)))?);
+    project.fabric = Some(fabric);
+    Ok(())
+}
+
 /// Takes what holds the loops of some stitches out of them.
 pub(super) fn drop(project: &mut Project, faces: &[u32]) -> Result<()> {
     each_loop(project, faces, |head| Operation::Release(head.map(VisitId).collect()))

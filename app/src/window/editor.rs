@@ -18,6 +18,7 @@ use crate::fabric::{Fabric, Moved};
 use crate::project::Project;
 use anyhow::Result;
 use glam::{DVec3, Vec3};
+use render::palette::StitchColors;
 use render::{Bounds, Camera, Faces, Lines, NamedView};
 use sim_core::{Materials, Pin, Scene, SharedGpu, SimCommand, SimThread, Snapshot, SolverChoice};
 use std::collections::BTreeSet;
@@ -45,6 +46,7 @@ pub struct Editor {
     pub(super) brush: Stitch,
     pub(super) camera: Camera,
     pub(super) navigation: Navigation,
+    pub(super) stitch_colors: StitchColors,
     pub(super) playing: bool,
     pub(super) panel: panels::State,
     pub(super) search: Option<Search>,
@@ -117,6 +119,7 @@ impl Editor {
             brush: Stitch::purl(),
             camera: Camera::default(),
             navigation: Navigation::default(),
+            stitch_colors: StitchColors::default(),
             playing: false,
             search: None,
             chart: None,

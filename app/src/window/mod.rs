@@ -13,6 +13,7 @@ mod panels;
 mod picture;
 mod pointer;
 mod runs;
+mod scissors;
 pub mod screen;
 mod search;
 pub mod selection;

@@ -2,12 +2,16 @@
 
 use super::editor::Editor;
 use super::selection::Mode;
-use crate::drawing::{Stage, drawing_where, stitch_colors};
+use crate::drawing::{Stage, drawing_where, stitch_colors, stitch_drawing};
 use crate::solids::solids;
 use glam::Vec3;
 use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, palette};
+use sim_core::{DeviceYarn, Snapshot, curves};
+use smallvec::SmallVec;
+use std::borrow::Cow;
 use std::sync::Arc;
-use stitch_mesh::ids::FaceId;
+use stitch_mesh::ids::{FaceId, VisitId};
+use stitch_mesh::yarn_curves::YarnCurves;
 
 /// Width of lines around what is selected and around what the pointer is over [px].
 const SELECTED_WIDTH: f32 = 4.0;
@@ -16,6 +20,13 @@ const HOVERED_WIDTH: f32 = 3.0;
 const TINT: f32 = 0.45;
 /// How far before and behind the yarn its marks lie, in radii of the yarn: loops reach two radii from the middle.
 const LIFT: f64 = 2.6;
+
+/// Yarn as it is shown.
+enum ShownYarn<'a> {
+    Curves(Cow<'a, YarnCurves>),
+    /// It is on the device already.
+    OnDevice(&'a DeviceYarn),
+}
 
 impl Editor {
     /// Puts the stage on the screen. Stitches that have only changed their kind keep their polygons.
@@ -32,7 +43,7 @@ impl Editor {
         if !same {
             self.show_polygons(stage);
         } else if let (Some(fabric), Some(rows)) = (fabric, &self.view.fabric_rows) {
-            let colors = stitch_colors(&fabric.stitches, &rows.rows);
+            let colors = stitch_colors(&fabric.stitches, &rows.rows, self.stitch_colors);
             for (polygon, color) in self.faces.polygons.iter_mut().zip(colors) {
                 polygon.color = color;
             }
@@ -44,19 +55,33 @@ impl Editor {
         let drawing = match stage {
             Stage::Yarn => {
                 // Curves come with the snapshots, made in the simulation's thread.
-                let yarn = self.snapshot.as_ref().map(|s| s.curves.clone()).unwrap_or_default();
+                let yarn = match self.snapshot.as_ref().map(|s| self.yarn_of(s)) {
+                    Some(ShownYarn::Curves(yarn)) => yarn.into_owned(),
+                    _ => YarnCurves::default(),
+                };
                 Drawing { yarn, solids: self.solids_now(), ..Drawing::default() }
             }
             stage => {
                 let hidden = &self.selection().hidden;
-                drawing_where(&self.view.project, stage, &|f| !hidden.contains(&f)).unwrap_or_default()
+                let (project, colors) = (&self.view.project, self.stitch_colors);
+                let shown = |f: FaceId| !hidden.contains(&f);
+                match (&project.fabric, &self.view.fabric_rows) {
+                    (Some(fabric), Some(rows)) if stage == Stage::Stitches => {
+                        stitch_drawing(&fabric.stitches, &rows.rows, &shown, colors)
+                    }
+                    _ => drawing_where(project, stage, &shown, colors).unwrap_or_default(),
+                }
             }
         };
-        let snapshot = self.snapshot.clone().filter(|s| stage == Stage::Yarn && s.on_device.is_some());
+        let snapshot = self.snapshot.clone().filter(|_| stage == Stage::Yarn);
+        let on_device = snapshot.as_ref().and_then(|s| match self.yarn_of(s) {
+            ShownYarn::OnDevice(yarn) => Some(yarn),
+            ShownYarn::Curves(_) => None,
+        });
         let shown = self.screen.as_mut().map(|screen| {
             screen.set(&drawing)?;
-            // Yarn that is on the device has no curves.
-            snapshot.map_or(Ok(()), |snapshot| screen.set_yarn(&snapshot))
+            on_device.into_iter().for_each(|yarn| screen.share_yarn(yarn));
+            Ok(())
         });
         self.report(shown);
         self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
@@ -96,7 +121,13 @@ impl Editor {
     /// Puts yarn that has moved on the screen.
     pub(super) fn show_yarn(&mut self) {
         let Some(snapshot) = self.snapshot.clone() else { return };
-        let shown = self.screen.as_mut().map(|screen| screen.set_yarn(&snapshot));
+        let shown = match self.yarn_of(&snapshot) {
+            ShownYarn::Curves(yarn) => self.screen.as_mut().map(|screen| screen.set_yarn(&yarn)),
+            ShownYarn::OnDevice(yarn) => self.screen.as_mut().map(|screen| {
+                screen.share_yarn(yarn);
+                Ok(())
+            }),
+        };
         self.report(shown);
         if self.view.project.scene.bodies.iter().any(|b| b.motion().is_some()) {
             let solids = self.solids_now();
@@ -105,6 +136,34 @@ impl Editor {
         }
         self.faces = self.loop_faces();
         self.marked = None;
+    }
+
+    /// The yarn of a snapshot as it is shown.
+    fn yarn_of<'a>(&self, snapshot: &'a Snapshot) -> ShownYarn<'a> {
+        match &snapshot.on_device {
+            Some(yarn) if self.selection().hidden.is_empty() => ShownYarn::OnDevice(yarn),
+            _ => ShownYarn::Curves(self.shown_yarn(snapshot)),
+        }
+    }
+
+    /// The curves of a snapshot's yarn, without that of hidden stitches.
+    pub(super) fn shown_yarn<'a>(&self, snapshot: &'a Snapshot) -> Cow<'a, YarnCurves> {
+        let Snapshot { net, state, .. } = snapshot;
+        let yarn = match &snapshot.on_device {
+            // It comes without curves.
+            Some(_) => Cow::Owned(curves(net, state, &self.view.project.materials)),
+            None => Cow::Borrowed(&snapshot.curves),
+        };
+        let hidden = &self.selection().hidden;
+        if hidden.is_empty() {
+            return yarn;
+        }
+        let gone = |visit: VisitId| {
+            let node = net.visits.get(visit.index()).and_then(|v| net.nodes.get(v.node.index()));
+            node.and_then(|n| n.face).is_some_and(|f| hidden.contains(&f))
+        };
+        let curves = yarn.curves.iter().flat_map(|curve| curve.without(gone)).collect();
+        Cow::Owned(YarnCurves { curves })
     }
 
     /// The bodies where they are in the simulation.
@@ -219,8 +278,13 @@ impl Editor {
                 nodes[face.index()].push([position.as_vec3(), node.position.as_vec3()]);
             }
         }
+        let hidden = &self.selection().hidden;
         let mut faces = Faces::default();
         for (face, nodes) in mesh.faces().zip(nodes) {
+            if hidden.contains(&face) {
+                faces.polygons.push(Polygon { vertices: SmallVec::new(), color: [0.0; 3] });
+                continue;
+            }
             let stitch = fabric.stitches.stitch(face);
             let outline = match nodes[..] {
                 // Four nodes an operation, as LL, LU, RU, RL.

@@ -26,6 +26,8 @@ pub enum Tool {
     Paint,
     /// Drag the yarn.
     Grab,
+    /// Click yarn to cut it.
+    Scissors,
 }
 
 /// A drag that is under way.
@@ -76,6 +78,8 @@ fn work(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
         Tool::Paint => paint(editor, response, held, modifiers),
         Tool::Grab if held => grab(editor),
         Tool::Grab => {}
+        Tool::Scissors if response.clicked() => editor.cut_at(ray),
+        Tool::Scissors => ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair),
     }
 }
 

@@ -6,8 +6,9 @@ use egui_wgpu::wgpu::FilterMode;
 use render::{
     Camera, Drawing, Faces, Gpu, LaidRun, LaidYarn, Lines, Quality, Renderer, Scene, Solids, Viewport,
 };
-use sim_core::{DeviceYarn, SharedGpu, Snapshot, YarnRun};
+use sim_core::{DeviceYarn, SharedGpu, YarnRun};
 use std::sync::Arc;
+use stitch_mesh::yarn_curves::YarnCurves;
 
 /// egui's painter, which holds the textures that egui can show.
 pub type SharedPainter = Arc<egui::mutex::RwLock<Painter>>;
@@ -75,12 +76,13 @@ impl Screen {
     ///
     /// # Errors
     /// As [`Self::set`].
-    pub fn set_yarn(&mut self, snapshot: &Snapshot) -> Result<()> {
-        match &snapshot.on_device {
-            Some(yarn) => self.scene.share_yarn(laid(yarn)),
-            None => self.scene.set_yarn(&self.gpu, &snapshot.curves)?,
-        }
-        Ok(())
+    pub fn set_yarn(&mut self, yarn: &YarnCurves) -> Result<()> {
+        Ok(self.scene.set_yarn(&self.gpu, yarn)?)
+    }
+
+    /// Replaces the yarn by some that is on the device already.
+    pub fn share_yarn(&mut self, yarn: &DeviceYarn) {
+        self.scene.share_yarn(laid(yarn));
     }
 
     /// Replaces the bodies only.

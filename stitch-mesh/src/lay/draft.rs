@@ -6,7 +6,6 @@ use super::template::{Template, TemplateNode};
 use crate::dye::Dye;
 use crate::ids::{NodeId, VisitId};
 use crate::stitch::Stitch;
-use crate::stitch_mesh::StitchMesh;
 use crate::wrapping::Wrapping;
 use crate::yarn_net::{Node, NodeKind, StitchContact};
 use glam::DVec3;
@@ -46,6 +45,8 @@ struct PieceBeyond {
 /// are numbered after those of the faces; visits in nodes and contacts are counted so until [`super::trace`] numbers them anew.
 pub(super) struct Draft<'a> {
     pub faces: FaceYarn<'a>,
+    /// Unit normals at the vertices of the mesh, [vertex_count].
+    pub vertex_normals: &'a [DVec3],
     /// Nodes beyond the faces.
     pub nodes: Vec<Node>,
     /// For each of these the way outward: see [`Self::node`].
@@ -65,11 +66,11 @@ pub(super) struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     /// The yarn of all faces, joined across the edges between them.
-    pub fn of_faces(stitches: &'a StitchMesh, vertex_normals: &'a [DVec3]) -> Self {
-        let faces = FaceYarn::of(stitches, vertex_normals);
+    pub fn of_faces(faces: FaceYarn<'a>, vertex_normals: &'a [DVec3]) -> Self {
         Self {
             joined: faces.joined_across_edges(),
             faces,
+            vertex_normals,
             nodes: Vec::new(),
             outward: Vec::new(),
             visits: Vec::new(),
@@ -134,7 +135,7 @@ impl<'a> Draft<'a> {
     /// when it turns back or ends there [m].
     pub fn node(&self, node: NodeId) -> (Node, DVec3) {
         match node.index().checked_sub(self.faces.node_count()) {
-            None => (self.faces.node(node), self.faces.outward(node)),
+            None => (self.faces.node(node, self.vertex_normals), self.faces.outward(node)),
             Some(i) => (self.nodes[i].clone(), self.outward[i]),
         }
     }
@@ -223,9 +224,10 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Whether yarn ends at a port: nothing goes on from there.
+    /// Whether yarn ends at a port: nothing goes on from there. Across an edge of two faces something always does.
     pub fn is_loose(&self, port: Port) -> bool {
-        self.other_side(port).is_none_or(|other| !self.has_piece_at(other))
+        let Some(other) = self.other_side(port) else { return true };
+        !self.faces.lie_across(port, other) && !self.has_piece_at(other)
     }
 
     /// The port at which the yarn that enters a piece at `from` ends loose; none for a ring.

@@ -14,9 +14,11 @@ use rayon::prelude::*;
 use smallvec::SmallVec;
 use std::collections::HashMap;
 
-/// Numbers of things in the faces before one.
+/// A face: its template, and how much lies in the faces before it.
 #[derive(Clone, Copy, Default)]
-struct Before {
+struct Cell {
+    template: u32,
+    ports: u32,
     nodes: u32,
     visits: u32,
     pieces: u32,
@@ -26,32 +28,30 @@ struct Before {
 /// See the module.
 pub(super) struct FaceYarn<'a> {
     stitches: &'a StitchMesh,
-    vertex_normals: &'a [DVec3],
     templates: Vec<Template>,
-    /// The template of every face.
-    of_face: Vec<u32>,
-    /// For every face, and at the end of all, [face_count + 1].
-    before: Vec<Before>,
+    /// Every face, and at the end what lies in all of them, [face_count + 1].
+    cells: Vec<Cell>,
     /// The face of every node.
     of_node: Vec<FaceId>,
 }
 
 impl<'a> FaceYarn<'a> {
-    pub fn of(stitches: &'a StitchMesh, vertex_normals: &'a [DVec3]) -> Self {
+    pub fn of(stitches: &'a StitchMesh) -> Self {
         let (templates, of_face) = templates(stitches);
-        let mut before = Vec::with_capacity(of_face.len() + 1);
-        let mut sum = Before::default();
-        before.push(sum);
-        for t in &of_face {
-            let t = &templates[*t as usize];
-            sum.nodes += t.nodes.len() as u32;
-            sum.visits += t.visits.len() as u32;
-            sum.pieces += t.pieces.len() as u32;
-            sum.contacts += t.contacts.len() as u32;
-            before.push(sum);
+        let mut cells = Vec::with_capacity(of_face.len() + 1);
+        let mut next = Cell::default();
+        for template in of_face {
+            cells.push(Cell { template, ..next });
+            let t = &templates[template as usize];
+            next.ports += t.piece_at.len() as u32;
+            next.nodes += t.nodes.len() as u32;
+            next.visits += t.visits.len() as u32;
+            next.pieces += t.pieces.len() as u32;
+            next.contacts += t.contacts.len() as u32;
         }
-        let of_node = owners(before.iter().map(|b| b.nodes));
-        Self { stitches, vertex_normals, templates, of_face, before, of_node }
+        cells.push(next);
+        let of_node = owners(cells.iter().map(|b| b.nodes));
+        Self { stitches, templates, cells, of_node }
     }
 
     pub fn stitches(&self) -> &'a StitchMesh {
@@ -63,81 +63,82 @@ impl<'a> FaceYarn<'a> {
     }
 
     pub fn visit_count(&self) -> usize {
-        self.before[self.of_face.len()].visits as usize
+        self.all().visits as usize
     }
 
     pub fn piece_count(&self) -> usize {
-        self.before[self.of_face.len()].pieces as usize
+        self.all().pieces as usize
     }
 
     /// Ports of all half-edges.
     pub fn port_count(&self) -> usize {
-        2 * self.stitches.mesh().half_edge_count()
+        self.all().ports as usize
     }
 
-    fn template(&self, face: FaceId) -> &Template {
-        &self.templates[self.of_face[face.index()] as usize]
+    /// What lies in all faces together.
+    fn all(&self) -> Cell {
+        self.cells[self.cells.len() - 1]
+    }
+
+    /// A face, with its template.
+    fn cell(&self, face: FaceId) -> (Cell, &Template) {
+        let cell = self.cells[face.index()];
+        (cell, &self.templates[cell.template as usize])
+    }
+
+    /// The face of a port, and which of its pieces begins or ends there.
+    fn at(&self, port: Port) -> (FaceId, Option<u16>) {
+        let face = self.stitches.mesh().face(HalfEdgeId(port / 2));
+        let (cell, template) = self.cell(face);
+        (face, template.piece_at[(port - cell.ports) as usize])
     }
 
     /// Whether a piece begins or ends at a port of a half-edge.
     pub fn has_piece_at(&self, port: Port) -> bool {
-        let mesh = self.stitches.mesh();
-        let face = mesh.face(HalfEdgeId(port / 2));
-        let first = 2 * mesh.first_half_edge(face).0;
-        self.template(face).piece_at[(port - first) as usize].is_some()
+        self.at(port).1.is_some()
     }
 
     /// The piece at a port of a half-edge.
     pub fn piece_at(&self, port: Port) -> Option<Piece<'_>> {
-        let mesh = self.stitches.mesh();
-        let face = mesh.face(HalfEdgeId(port / 2));
-        let first = 2 * mesh.first_half_edge(face).0;
-        let i = self.template(face).piece_at[(port - first) as usize]?;
-        Some(self.piece(face, usize::from(i)))
-    }
-
-    fn piece(&self, face: FaceId, i: usize) -> Piece<'_> {
-        let template = self.template(face);
-        let piece = &template.pieces[i];
-        let before = self.before[face.index()];
-        let port = 2 * self.stitches.mesh().first_half_edge(face).0;
-        Piece {
-            number: before.pieces + i as u32,
-            from: port + Port::from(piece.from),
-            to: port + Port::from(piece.to),
-            first: before.visits + u32::from(piece.visits.start),
+        let (face, piece) = self.at(port);
+        let i = piece?;
+        let (cell, template) = self.cell(face);
+        let piece = &template.pieces[usize::from(i)];
+        Some(Piece {
+            number: cell.pieces + u32::from(i),
+            from: cell.ports + Port::from(piece.from),
+            to: cell.ports + Port::from(piece.to),
+            first: cell.visits + u32::from(piece.visits.start),
             nodes: &template.visits[usize::from(piece.visits.start)..usize::from(piece.visits.end)],
-            nodes_before: before.nodes,
+            nodes_before: cell.nodes,
             dye: self.stitches.dyes()[face.index()],
             own: piece.own,
-        }
+        })
     }
 
     /// Both ports of all pieces, in the order of their numbers.
     pub fn ends(&self) -> impl Iterator<Item = [Port; 2]> {
-        self.of_face.iter().zip(self.stitches.mesh().faces()).flat_map(|(template, face)| {
-            let first = 2 * self.stitches.mesh().first_half_edge(face).0;
-            let pieces = &self.templates[*template as usize].pieces;
-            pieces.iter().map(move |p| [p.from, p.to].map(|port| first + Port::from(port)))
+        self.stitches.mesh().faces().flat_map(|face| {
+            let (cell, template) = self.cell(face);
+            template.pieces.iter().map(move |p| [p.from, p.to].map(|port| cell.ports + Port::from(port)))
         })
     }
 
     /// A node. Its visits are numbered as in the draft.
-    pub fn node(&self, node: NodeId) -> Node {
+    pub fn node(&self, node: NodeId, vertex_normals: &[DVec3]) -> Node {
         let face = self.of_node[node.index()];
-        let before = self.before[face.index()];
-        let template = &self.template(face).nodes[(node.0 - before.nodes) as usize];
+        let (cell, template) = self.cell(face);
+        let template = &template.nodes[(node.0 - cell.nodes) as usize];
         let (mut position, mut normal) = (DVec3::ZERO, DVec3::ZERO);
         for (v, weight) in self.stitches.mesh().face_vertices(face).zip(&template.weights) {
             position += self.stitches.mesh().position(v) * *weight;
-            normal += self.vertex_normals[v.index()] * *weight;
+            normal += vertex_normals[v.index()] * *weight;
         }
-        let mut visits = SmallVec::new();
-        template.stack.iter().for_each(|v| visits.push(VisitId(before.visits + u32::from(*v))));
+        let visits = template.stack.iter().map(|v| VisitId(cell.visits + u32::from(*v)));
         Node {
             position,
             normal: normal.normalize_or(DVec3::Z),
-            visits,
+            visits: few(visits),
             face: Some(face),
             kind: template.kind,
         }
@@ -146,14 +147,15 @@ impl<'a> FaceYarn<'a> {
     /// The way outward from a node: see [`super::draft::Draft::node`].
     pub fn outward(&self, node: NodeId) -> DVec3 {
         let face = self.of_node[node.index()];
-        let template = &self.template(face).nodes[(node.0 - self.before[face.index()].nodes) as usize];
+        let (cell, template) = self.cell(face);
+        let template = &template.nodes[(node.0 - cell.nodes) as usize];
         let corners = self.stitches.mesh().face_vertices(face);
         corners.zip(&template.outward).map(|(v, w)| self.stitches.mesh().position(v) * *w).sum()
     }
 
     /// All nodes, their visits numbered as in the draft.
-    pub fn nodes(&self) -> impl IndexedParallelIterator<Item = Node> {
-        (0..self.node_count()).into_par_iter().map(|n| self.node(NodeId::new(n)))
+    pub fn nodes(&self, vertex_normals: &[DVec3]) -> impl IndexedParallelIterator<Item = Node> {
+        (0..self.node_count()).into_par_iter().map(|n| self.node(NodeId::new(n), vertex_normals))
     }
 
     /// All stitch contacts.
@@ -161,31 +163,50 @@ impl<'a> FaceYarn<'a> {
         &self,
         number: impl Fn(u32) -> VisitId + Sync + Send,
     ) -> impl IndexedParallelIterator<Item = StitchContact> {
-        let of_contact = owners(self.before.iter().map(|b| b.contacts));
+        let of_contact = owners(self.cells.iter().map(|b| b.contacts));
         of_contact.into_par_iter().enumerate().map(move |(c, face)| {
-            let before = self.before[face.index()];
-            let contact = &self.template(face).contacts[c - before.contacts as usize];
+            let (cell, template) = self.cell(face);
+            let contact = &template.contacts[c - cell.contacts as usize];
             let wrapping = self.stitches.wrappings()[face.index()];
-            contact.numbered(wrapping, |v| number(before.visits + u32::from(v)))
+            contact.numbered(wrapping, |v| number(cell.visits + u32::from(v)))
         })
+    }
+
+    /// Whether two ports are of the two sides of one edge.
+    pub fn lie_across(&self, port: Port, other: Port) -> bool {
+        (port as usize) < self.port_count()
+            && self.stitches.mesh().twin(HalfEdgeId(port / 2)) == Some(HalfEdgeId(other / 2))
     }
 
     /// For every port of a half-edge the one across its edge.
     pub fn joined_across_edges(&self) -> Vec<Port> {
         let mesh = self.stitches.mesh();
-        let across = |port: Port| {
-            let h = HalfEdgeId(port / 2);
-            let Some(twin) = mesh.twin(h) else { return LOOSE };
-            let face = mesh.face(h);
-            let wale = self.template(face).ports.is_wale((h.0 - mesh.first_half_edge(face).0) as usize);
-            match (wale, port % 2) {
-                (true, 0) => wale_port(twin),
-                (true, _) => LOOSE,
-                (false, place) => course_port(twin, 1 - place),
+        let mut joined = vec![LOOSE; self.port_count()];
+        joined.par_chunks_exact_mut(2).enumerate().for_each(|(h, ports)| {
+            let h = HalfEdgeId::new(h);
+            let Some(twin) = mesh.twin(h) else { return };
+            let (cell, template) = self.cell(mesh.face(h));
+            if template.ports.is_wale((h.0 - cell.ports / 2) as usize) {
+                ports[0] = wale_port(twin);
+            } else {
+                ports.copy_from_slice(&[1, 0].map(|place| course_port(twin, place)));
             }
-        };
-        (0..self.port_count() as Port).into_par_iter().map(across).collect()
+        });
+        joined
     }
+}
+
+/// A list that most often fits in its place, without asking for each thing whether it still does.
+pub(super) fn few<T: Copy + Default, const N: usize>(
+    things: impl ExactSizeIterator<Item = T>,
+) -> SmallVec<[T; N]> {
+    let count = things.len();
+    if count > N {
+        return things.collect();
+    }
+    let mut place = [T::default(); N];
+    place.iter_mut().zip(things).for_each(|(at, thing)| *at = thing);
+    SmallVec::from_buf_and_len(place, count)
 }
 
 /// The face of each thing, from how many there are before each face.

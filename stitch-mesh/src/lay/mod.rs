@@ -32,8 +32,13 @@
 //!
 //! # Speed
 //! What a stitch lays follows from its template and from how much lies in the faces before, so no face's yarn is written down
-//! before it is in the net (`faces`): half of the time had gone into memory that was touched for the first time. Nodes are
-//! placed by one thread while another follows the yarn. After an edit that leaves all yarns where they run, [`relay`] takes the net from before.
+//! before it is in the net (`faces`): half of the time had gone into memory that was touched for the first time. Of two threads
+//! one finds the rows while the other finds normals and templates; one follows the yarn while the other places nodes; one measures
+//! the yarn while the other numbers the contacts. On 65 000 stitches that is 30 ms of one processor and 19 ms of two, where finding
+//! the rows first had made it 28 ms of two. What is left is 42 MB, written once and read once; laid into memory that nobody has had
+//! before, it takes a third as long again. So an edit that changes the faces is laid as a whole: a net with a part cut out and put in would
+//! have to be written as well, with every number after the edit moved. After an edit that leaves all yarns where they run, [`relay`]
+//! takes the net from before.
 
 mod bind_off;
 mod border;
@@ -55,12 +60,14 @@ use crate::ids::HalfEdgeId;
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::YarnNet;
 use draft::Draft;
+use faces::FaceYarn;
 pub use relay::relay;
 
 /// Lays the yarn of a stitch mesh. The same mesh always gives the same net.
 pub fn lay(stitches: &StitchMesh) -> YarnNet {
-    let (normals, rows) = rayon::join(|| stitches.mesh().vertex_normals(), || stitches.rows());
-    let mut draft = Draft::of_faces(stitches, &normals);
+    let ((normals, faces), rows) =
+        rayon::join(|| (stitches.mesh().vertex_normals(), FaceYarn::of(stitches)), || stitches.rows());
+    let mut draft = Draft::of_faces(faces, &normals);
     cable::cross(stitches, &normals, &mut draft);
     let spirals = if stitches.marks().spiral { spiral::wind(stitches, &rows, &mut draft) } else { vec![] };
     let bound_off = border::finish(stitches, &rows, &normals, &spirals, &mut draft);

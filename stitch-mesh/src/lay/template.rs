@@ -9,6 +9,7 @@
 //! here the order of the yarns at the node, front to back; how far apart they lie is the business of whoever draws them.
 //! Ports are counted as the half-edges of the face, so a template is put on a face by adding numbers.
 
+use super::faces::few;
 use crate::ids::VisitId;
 use crate::mean_value::{mean_value_weights, reference_polygon};
 use crate::stitch::{Make, Op, Stitch};
@@ -69,7 +70,7 @@ impl TemplateContact {
             handedness: self.handedness,
             wrapping,
             new: self.new.map(&number),
-            old: self.old.iter().map(|o| o.map(&number)).collect(),
+            old: few(self.old.iter().map(|o| o.map(&number))),
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::dye::Dye;
 use crate::ids::{HalfEdgeId, NodeId, VisitId, YarnId};
 use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::{Loop, Node, NodeKind, TakenIn, Visit, Yarn, YarnNet};
+use glam::DVec3;
 use rayon::prelude::*;
 use smallvec::smallvec;
 use std::sync::Arc;
@@ -19,8 +20,10 @@ const SHORTEST: f64 = 1e-5;
 /// Makes the net of a draft.
 pub fn trace(mut draft: Draft<'_>) -> YarnNet {
     let mut nodes = Vec::with_capacity(draft.node_count() + draft.node_count() / 8);
-    let (traced, ()) =
-        rayon::join(|| Tracer::all(&draft), || draft.faces.nodes().collect_into_vec(&mut nodes));
+    let (traced, ()) = rayon::join(
+        || Tracer::all(&draft),
+        || draft.faces.nodes(draft.vertex_normals).collect_into_vec(&mut nodes),
+    );
     let Traced { number, crossed, mut visits, mut yarns, free } = traced;
     let numbered = |v: u32| VisitId(number[v as usize]);
     nodes.append(&mut draft.nodes);
@@ -29,15 +32,21 @@ pub fn trace(mut draft: Draft<'_>) -> YarnNet {
     for contact in &mut draft.contacts {
         contact.new.iter_mut().chain(contact.old.iter_mut().flatten()).for_each(|v| *v = numbered(v.0));
     }
-    measure(&mut visits, &mut yarns, &nodes);
+    let ((loops, contacts), ()) = rayon::join(
+        || {
+            let beyond = std::mem::take(&mut draft.contacts);
+            (loops(draft.faces.stitches(), &crossed), draft.faces.contacts(numbered).chain(beyond).collect())
+        },
+        || measure(&mut visits, &mut yarns, &nodes),
+    );
     // A segment begins at whichever of its ends the yarn meets first.
     let segment = |v: u32| numbered(v).min(numbered(v + 1));
     let taken_in = draft.take_in.iter();
     YarnNet {
         taken_in: taken_in.map(|(v, length)| TakenIn { segment: segment(*v), length: *length }).collect(),
-        loops: loops(draft.faces.stitches(), &crossed),
+        loops,
         nodes,
-        contacts: draft.faces.contacts(numbered).chain(std::mem::take(&mut draft.contacts)).collect(),
+        contacts,
         visits: Arc::new(visits),
         yarns,
     }
@@ -183,21 +192,39 @@ impl<'a> Tracer<'a> {
     }
 }
 
+/// Visits that are measured in one go.
+const MEASURED: usize = 1 << 12;
+
 /// Measures where along their yarns the visits lie.
 fn measure(visits: &mut [Visit], yarns: &mut [Yarn], nodes: &[Node]) {
-    let apart = |a: &Visit, b: &Visit| {
-        let [a, b] = [a, b].map(|v| nodes[v.node.index()].position);
-        a.distance(b).max(SHORTEST)
-    };
-    let lengths: Vec<f64> = visits.par_windows(2).map(|pair| apart(&pair[0], &pair[1])).collect();
-    for yarn in yarns {
-        let [start, end] = [yarn.visits.start, yarn.visits.end].map(|v| v as usize);
-        let mut u = 0.0;
-        for i in start + 1..end {
-            u += lengths[i - 1];
-            visits[i].u = u;
+    let position = |v: &Visit| nodes[v.node.index()].position;
+    let apart = |a: DVec3, b: DVec3| a.distance(b).max(SHORTEST);
+    // First the way of each from the visit before it, whichever yarn that is of.
+    let begin: Vec<DVec3> = visits
+        .first()
+        .into_iter()
+        .chain(visits.iter().skip(MEASURED - 1).step_by(MEASURED))
+        .map(position)
+        .collect();
+    visits.par_chunks_mut(MEASURED).zip(begin).for_each(|(chunk, mut before)| {
+        for visit in chunk {
+            let at = position(visit);
+            visit.u = apart(before, at);
+            before = at;
         }
-        yarn.period = yarn.period.map(|_| u + apart(&visits[end - 1], &visits[start]));
+    });
+    for yarn in yarns {
+        let visits = &mut visits[yarn.visits.start as usize..yarn.visits.end as usize];
+        let (Some(first), Some(last)) = (visits.first().map(position), visits.last().map(position)) else {
+            continue;
+        };
+        visits[0].u = 0.0;
+        let mut u = 0.0;
+        for visit in &mut visits[1..] {
+            u += visit.u;
+            visit.u = u;
+        }
+        yarn.period = yarn.period.map(|_| u + apart(last, first));
     }
 }
 

@@ -22,6 +22,10 @@ pub(super) const ACTIONS: &[Action] = &[
     .at(FABRIC)
     .on(On::Edges)
     .unless(no_line),
+    Action::new("Cross strands", "Cross loops in the strands that are written out", cross_strands)
+        .at(FABRIC)
+        .on(On::Edges)
+        .unless(|e| no_line(e).or_else(|| e.panel.strands.cable(Vec::new()).err())),
     Action::new("Sew", "Sew two lines of border edges together", sew)
         .key(Modifiers::NONE, Key::S)
         .at(FABRIC)
@@ -102,6 +106,13 @@ pub(super) const ACTIONS: &[Action] = &[
     .at(FABRIC)
     .on(On::Faces)
     .unless(Editor::no_faces),
+    Action::new("Wrap", "Wrap the yarns of stitches as the numbers say", |e| {
+        let faces = e.faces_meant().into_iter().map(|f| f.0).collect();
+        e.act(e.panel.wrap.command(faces));
+    })
+    .at(FABRIC)
+    .on(On::Faces)
+    .unless(Editor::no_faces),
     Action::new("Relax mesh", "Make the stitches as even as they can be, and lay the yarn again", |e| {
         let [aspect, fill] = e.panel.relax;
         e.act(Command::RelaxMesh { aspect, fill, surface: e.panel.relax_on_surface });
@@ -156,10 +167,9 @@ fn no_line(editor: &Editor) -> Option<&'static str> {
     (line.len() < 3).then_some("a cable needs two edges or more")
 }
 
-/// The line of course edges runs left to right where it is the bottom of the faces above it.
-fn cable(editor: &mut Editor) {
-    let Some(stitches) = stitches(editor) else { return };
-    let Some(mut path) = lines(editor).into_iter().next() else { return };
+/// The selected line of course edges, left to right: so it runs where it is the bottom of the faces above it.
+fn line(editor: &Editor, stitches: &StitchMesh) -> Option<Vec<VertexId>> {
+    let mut path = lines(editor).into_iter().next()?;
     let mesh = stitches.mesh();
     let backwards = mesh.edge_between(path[0], path[1]).is_some_and(|edge| {
         let (first, second) = mesh.edge_sides(edge);
@@ -169,10 +179,31 @@ fn cable(editor: &mut Editor) {
     if backwards {
         path.reverse();
     }
+    Some(path)
+}
+
+fn edges_of(path: &[VertexId]) -> Vec<[u32; 2]> {
+    path.windows(2).map(|w| [w[0].0, w[1].0]).collect()
+}
+
+/// Crosses the strands of the panel, in place of what crosses there now.
+fn cross_strands(editor: &mut Editor) {
+    let Some(stitches) = stitches(editor) else { return };
+    let Some(path) = line(editor, stitches) else { return };
+    let edges = edges_of(&path);
+    let Ok(cable) = editor.panel.strands.cable(path) else { return };
+    let taken = stitches.cables().iter().any(|c| cable.path.windows(2).any(|w| c.covers(w[0], w[1])));
+    let clear = taken.then_some(Command::ClearCables { edges });
+    editor.act_all(clear.into_iter().chain([Command::SetCable { cable }]));
+}
+
+fn cable(editor: &mut Editor) {
+    let Some(stitches) = stitches(editor) else { return };
+    let Some(path) = line(editor, stitches) else { return };
     let loops = (path.len() - 1) as u8;
     let cross = |to_left| Cable::cross(path.clone(), loops / 2, loops - loops / 2, to_left);
     let now = stitches.marks().cables.iter().find(|c| c.path == path);
-    let edges = || path.windows(2).map(|w| [w[0].0, w[1].0]).collect();
+    let edges = || edges_of(&path);
     let next = match now {
         None => vec![Command::SetCable { cable: cross(true) }],
         Some(cable) if cable.front.first() == Some(&1) => {

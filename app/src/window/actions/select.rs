@@ -1,13 +1,9 @@
 //! Selecting and hiding.
 
 use super::{Action, FABRIC, On};
-use crate::drawing::Stage;
 use crate::window::editor::Editor;
 use crate::window::selection::{Mode, Selection};
 use egui::{Key, Modifiers};
-
-/// Stages at which faces can be hidden: yarn passes from face to face.
-const MESHES: &[Stage] = &[Stage::Mesh, Stage::Labels, Stage::Stitches];
 
 pub(super) const ACTIONS: &[Action] = &[
     Action::new("Edge", "Clicks select edges", |e| set_mode(e, Mode::Edge)).key(Modifiers::NONE, Key::Num1),
@@ -35,13 +31,13 @@ pub(super) const ACTIONS: &[Action] = &[
     .at(FABRIC)
     .on(On::Faces)
     .unless(Editor::no_faces),
-    Action::new("Hide", "Hide what is selected", |e| with(e, |s, e| s.hide(e.surface().mesh())))
-        .key(Modifiers::NONE, Key::H)
-        .at(MESHES)
-        .unless(|e| e.selection().is_empty().then_some("nothing is selected")),
+    Action::new("Hide", "Hide what is selected, and its yarn", |e| {
+        with(e, |s, e| s.hide(e.surface().mesh()))
+    })
+    .key(Modifiers::NONE, Key::H)
+    .unless(|e| e.selection().is_empty().then_some("nothing is selected")),
     Action::new("Show all", "Show again what was hidden", |e| with(e, |s, _| s.hidden.clear()))
         .key(Modifiers::ALT, Key::H)
-        .at(MESHES)
         .unless(|e| e.selection().hidden.is_empty().then_some("nothing is hidden")),
 ];
 

@@ -82,6 +82,9 @@ pub(super) const ACTIONS: &[Action] = &[
     Action::new("Grab", "Drag the yarn while it is simulated", |e| e.take(Tool::Grab))
         .key(Modifiers::NONE, Key::G)
         .at(&[Stage::Yarn]),
+    Action::new("Scissors", "Click yarn to cut it where the pointer is", |e| e.take(Tool::Scissors))
+        .key(Modifiers::SHIFT, Key::X)
+        .at(&[Stage::Yarn]),
     Action::new(
         "Chart",
         "Show the rows as a knitting chart, or put it away; a selection of several as it is now",

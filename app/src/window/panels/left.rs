@@ -1,6 +1,6 @@
 //! Tools and what they work with, stage by stage.
 
-use super::{colour, evenness, library, palette, patterns, tessellation, yarn};
+use super::{colour, evenness, library, palette, patterns, strands, tessellation, wrapping, yarn};
 use crate::drawing::Stage;
 use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
@@ -37,6 +37,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                         ("Brush select", Tool::Brush),
                         ("Paint", Tool::Paint),
                         ("Grab", Tool::Grab),
+                        ("Scissors", Tool::Scissors),
                     ],
                 };
                 for (name, tool) in tools {
@@ -77,7 +78,7 @@ fn fabric(editor: &mut Editor, ui: &mut Ui) {
         for (shown, name, what) in [
             (Tab::Palette, "Palette", "Kinds of stitches, and patterns of knit and purl"),
             (Tab::Library, "Library", "Written patterns, to be tiled over the fabric"),
-            (Tab::Finish, "Finish", "Copies, colours, cables, seams, structure and evenness"),
+            (Tab::Finish, "Finish", "Copies, colours, cables, seams, structure, wrapping and evenness"),
             (Tab::Simulate, "Simulate", "The simulation, its scene and its yarn"),
         ] {
             let fits = shown != Tab::Simulate || in_yarn;
@@ -101,6 +102,8 @@ fn fabric(editor: &mut Editor, ui: &mut Ui) {
             colour::show(editor, ui);
             ui.separator();
             edges(editor, ui);
+            ui.separator();
+            wrapping::show(editor, ui);
             ui.separator();
             evenness::show(editor, ui);
         }
@@ -161,6 +164,7 @@ fn edges(editor: &mut Editor, ui: &mut Ui) {
             button(editor, ui, name);
         }
     });
+    strands::show(editor, ui);
     ui.heading("Structure");
     ui.horizontal_wrapped(|ui| {
         for name in ["Split loop", "Collapse loop", "Divide stitch", "Remove wale"] {

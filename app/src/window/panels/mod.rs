@@ -13,8 +13,10 @@ mod problems;
 pub mod right;
 mod scene;
 pub mod status;
+mod strands;
 mod tessellation;
 pub mod top;
+mod wrapping;
 mod yarn;
 
 use super::view::View;
@@ -49,6 +51,10 @@ pub struct State {
     pub width_changed: bool,
     /// The colour to dye with.
     pub dye: Dye,
+    /// A cable written out.
+    pub strands: strands::Fields,
+    /// Wrapping of single stitches.
+    pub wrap: wrapping::Fields,
     /// Height over width of a stitch at rest, and how much of the surface stitches fill.
     pub relax: [f64; 2],
     /// Whether relaxed stitches stay on the surface of the input mesh.
@@ -77,6 +83,8 @@ impl State {
             material: None,
             width_changed: view.project.fabric.is_none(),
             dye: Dye([0x00, 0x72, 0xb2]),
+            strands: strands::Fields::default(),
+            wrap: wrapping::Fields::default(),
             relax: [RelaxParams::default().aspect, RelaxParams::default().fill],
             relax_on_surface: true,
             forecast: tessellation::Forecast::default(),

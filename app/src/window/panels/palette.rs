@@ -4,12 +4,11 @@ use super::color32;
 use crate::window::catalogue;
 use crate::window::editor::Editor;
 use egui::{Color32, Ui};
-use render::palette;
 use stitch_mesh::catalogue::GROUPS;
 
 /// The colour of a stitch in the picture.
-pub fn color(symbol: &str) -> Color32 {
-    color32(palette::stitch(symbol, 0))
+pub fn color(editor: &Editor, symbol: &str) -> Color32 {
+    color32(editor.stitch_colors.of(symbol, 0))
 }
 
 /// Shows the palette.
@@ -46,7 +45,8 @@ fn stitch(editor: &mut Editor, ui: &mut Ui, symbol: &str) {
     let text = egui::RichText::new(symbol).color(Color32::BLACK).monospace();
     let stroke =
         if chosen { egui::Stroke::new(2.5, ui.visuals().strong_text_color()) } else { egui::Stroke::NONE };
-    let button = egui::Button::new(text).fill(color(symbol)).stroke(stroke).min_size(egui::vec2(36.0, 20.0));
+    let button =
+        egui::Button::new(text).fill(color(editor, symbol)).stroke(stroke).min_size(egui::vec2(36.0, 20.0));
     let response = ui.add(button);
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{symbol} · {}", catalogue::name(symbol)))

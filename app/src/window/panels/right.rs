@@ -28,7 +28,7 @@ fn facts(editor: &Editor, ui: &mut Ui) {
         for (symbol, count) in &facts.stitches {
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
-                ui.painter().rect_filled(rect, 2.0, palette::color(symbol));
+                ui.painter().rect_filled(rect, 2.0, palette::color(editor, symbol));
                 ui.label(format!("{count} × {symbol}"));
             });
         }

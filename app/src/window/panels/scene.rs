@@ -37,15 +37,12 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         button(editor, ui, "Let go");
     });
     let holds = editor.snapshot.as_ref().map(|s| s.holds.clone()).unwrap_or_default();
-    egui::Grid::new("holds").num_columns(2).show(ui, |ui| {
-        for HoldFact { what, force_n } in holds.iter().take(MOST) {
-            let [x, y, z] = (1e3 * *force_n).to_array();
-            ui.add(egui::Label::new(what).truncate());
-            ui.label(format!("{:.2} mN", 1e3 * force_n.length()))
-                .on_hover_text(format!("Force on the fabric: {x:.2}, {y:.2}, {z:.2} mN"));
-            ui.end_row();
-        }
-    });
+    for HoldFact { what, force_n } in holds.iter().take(MOST) {
+        let [x, y, z] = (1e3 * *force_n).to_array();
+        // In one label, which goes on in the next line where a name is long.
+        ui.label(format!("{what}: {:.2} mN", 1e3 * force_n.length()))
+            .on_hover_text(format!("Force on the fabric: {x:.2}, {y:.2}, {z:.2} mN"));
+    }
     if holds.len() > MOST {
         ui.label(format!("and {} more", holds.len() - MOST));
     }

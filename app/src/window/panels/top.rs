@@ -7,6 +7,7 @@ use crate::window::editor::Editor;
 use crate::window::navigation::Navigation;
 use crate::window::session::Request;
 use egui::Ui;
+use render::palette::StitchColors;
 use std::path::PathBuf;
 
 /// Shows the panel.
@@ -65,9 +66,16 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                 for (navigation, name, what) in Navigation::ALL {
                     ui.radio_value(&mut editor.navigation, navigation, name).on_hover_text(what);
                 }
+                ui.label("Colours of stitches");
+                for (colors, name, what) in StitchColors::ALL {
+                    let choice = ui.radio_value(&mut editor.stitch_colors, colors, name);
+                    if choice.on_hover_text(what).changed() {
+                        editor.show_stage();
+                    }
+                }
             })
             .response
-            .on_hover_text("How the mouse moves the view");
+            .on_hover_text("How the mouse moves the view, and what colours stitches have");
             button_as(editor, ui, "Search commands", "🔍 Search");
         });
     });

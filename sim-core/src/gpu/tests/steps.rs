@@ -1,11 +1,15 @@
 //! Whole steps against those of the CPU.
 
 use super::agreement::pinned;
-use super::{device, ten_fabrics};
+use super::{device, spoilt, ten_fabrics};
 use crate::gpu::GpuSimulator;
+use crate::gpu::kernel::{Kernels, SOURCES, Source};
+use crate::handover::Handover;
 use crate::material::Material;
+use crate::noise::unit_hash;
 use crate::scene::Scene;
 use crate::simulator::{SimError, Simulator};
+use glam::DVec3;
 use std::sync::Arc;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
@@ -44,6 +48,49 @@ fn ten_fabrics_at_rest_step_like_on_the_cpu() {
     }
 }
 
+/// The distance between a step of the CPU and one with these kernels, of fabric so thrown about that its segments turn; and what the
+/// CPU draws them back by.
+fn thrown_about(sources: &[Source]) -> Option<(f64, f64)> {
+    let device = device()?;
+    let (_, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    let material = Material::for_loop_width(3e-3);
+    let mut state = net.laid_state();
+    for (i, v) in state.velocity.iter_mut().enumerate() {
+        let number = |k: usize| 0.2 * (unit_hash((3 * i + k) as u64) - 0.5);
+        *v = DVec3::new(number(0), number(1), number(2));
+    }
+    let scene = Scene { time_step: 4e-3, ..Scene::empty() };
+    let mut cpu = Simulator::new(&net, material.clone(), scene.clone(), state.clone()).unwrap();
+    let from = Handover::new(&net, material, scene, state).unwrap();
+    let kernels = Kernels::compile(&device, sources).unwrap();
+    let mut gpu = GpuSimulator::with(&device, kernels, 1 << 25, from).unwrap();
+    assert_eq!(cpu.step().unwrap(), gpu.step().unwrap());
+    let gpu = gpu.state().unwrap();
+    let longest = |s: &YarnState| {
+        let strain = |g: stitch_mesh::yarn_net::Segment| {
+            let [a, b] = g.ends.map(|v| s.position[net.visits[v.index()].node.index()]);
+            a.distance(b) / (s.sliding[g.ends[1].index()] + g.wrap - s.sliding[g.ends[0].index()]) - 1.0
+        };
+        net.segments().map(strain).fold(0.0, f64::max)
+    };
+    Some((apart(cpu.state(), gpu), longest(gpu) - longest(cpu.state())))
+}
+
+#[test]
+fn segments_that_turn_are_drawn_back_as_on_the_cpu() {
+    let Some((apart, longer)) = thrown_about(SOURCES) else { return };
+    println!("{apart:.1e} m apart, {longer:.1e} longer");
+    // They fly by 0.4 mm, twice as far as those that CLOSE is for.
+    assert!(apart < 3.0 * CLOSE && longer.abs() < 1e-4);
+    let Some((apart, longer)) = thrown_about(&spoilt("overshoot", "sum += drawn", "sum += 0.7 * drawn"))
+    else {
+        return;
+    };
+    println!("spoilt: {apart:.1e} m apart, {longer:.1e} longer");
+    assert!(longer > 1e-3);
+}
+
 #[test]
 fn a_free_swatch_curls_as_on_the_cpu() {
     let (_, net) = ten_fabrics().swap_remove(0);
@@ -70,7 +117,7 @@ fn a_step_that_goes_wrong_is_thrown_away() {
     let before = gpu.state().unwrap().clone();
     // Pulled so hard that no step is small enough.
     let node = net.nodes.len() as u32 / 2;
-    let target = net.nodes[node as usize].position + glam::DVec3::Z;
+    let target = net.nodes[node as usize].position + DVec3::Z;
     let pins = vec![crate::Pin { node, target, stiffness: 1e9 }];
     gpu.set_scene(Scene { pins, ..Scene::empty() }).unwrap();
     let error = gpu.step().unwrap_err();
