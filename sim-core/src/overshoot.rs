@@ -8,8 +8,10 @@
 //! has, and lengths swing from step to step.
 //!
 //! So both ends are drawn together until the length is ℓ: along the segment, in inverse proportion to their masses. These
-//! are impulses between two points in the line through both, which keep momentum and angular momentum. Yarn that is really
-//! stretched stays so; at rest, and in a step that turns nothing, nothing happens.
+//! are impulses between two points in the line through both, which keep momentum and angular momentum. Where a body, a pin or
+//! another layer holds a node with stiffness k and drag c, it counts as heavier by h²k + hc, which is what the step counts it as:
+//! otherwise yarn would pull at jaws that don't give. Yarn that is really stretched stays so; at rest, and in a step that turns
+//! nothing, nothing happens.
 //!
 //! # Practice
 //! All segments at once, again and again, each by a part of what it has too much (Jacobi): the order of segments does not matter,
@@ -35,7 +37,7 @@ pub(crate) const PART: f64 = 0.6;
 pub(crate) const LEAST: f64 = 0.5;
 
 /// Draws the ends of segments that have turned from `state` to `next` together, in a step of `h` [s]. `masses` of nodes
-/// [node_count] [kg].
+/// with what holds them [node_count] [kg].
 pub(crate) fn draw_back(model: &Model, masses: &[f64], state: &YarnState, next: &mut YarnState, h: f64) {
     let reckoned = |nodes: [usize; 2]| {
         let [a, b] = nodes;

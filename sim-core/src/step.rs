@@ -45,7 +45,7 @@ pub enum Rejection {
     /// A segment would lose more than half of its yarn.
     #[error("segment {0} loses more than half of its yarn")]
     Shrinking(usize),
-    /// The ends of a segment would move against each other by more than [`LEAP`].
+    /// The ends of a segment would move against each other by more than most of its length.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
     /// More layers of the fabric meet than the GPU has room for.
@@ -67,6 +67,9 @@ pub(crate) struct Stepper {
     /// √μ of the yarn at each node [node_count].
     grips: Vec<f64>,
     layers: Layers,
+    /// How firmly bodies, pins and other layers hold each node in this step, as a mass: h²k + hc in the mean of all directions,
+    /// [node_count] [kg].
+    held: Vec<f64>,
     /// The nodes at which yarns slide on each other.
     pub stacks: Vec<Stack>,
     /// Force of each body on the fabric in the last step that went well [N].
@@ -98,6 +101,7 @@ impl Stepper {
             clearances: Vec::new(),
             grips: Vec::new(),
             layers,
+            held: Vec::new(),
             stacks,
             body_forces: Vec::new(),
             costs: Costs::default(),
@@ -127,6 +131,8 @@ impl Stepper {
         watch.lap(&mut self.costs, Stage::Assembly);
         let anchors = self.add_friction(now, h);
         watch.lap(&mut self.costs, Stage::Friction);
+        self.held.clear();
+        self.held.resize(self.masses.len(), 0.0);
         self.add_layers(state, scene, h);
         let touching = self.add_bodies(state, scene, time_s, h);
         let held = self.add_pins(state, scene, time_s + h, h);
@@ -143,7 +149,8 @@ impl Stepper {
         }
         let mut next = advanced(state, velocity, rate, h);
         let forces = body_forces(scene, &touching, &next.velocity, h);
-        draw_back(&self.model, &self.masses, state, &mut next, h);
+        let firm: Vec<f64> = self.masses.iter().zip(&self.held).map(|(mass, held)| mass + held).collect();
+        draw_back(&self.model, &firm, state, &mut next, h);
         self.judge(state, &next)?;
         self.body_forces = forces;
         watch.lap(&mut self.costs, Stage::Rest);
@@ -233,6 +240,9 @@ impl Stepper {
 
     /// Adds a 3 × 3 block to the matrix.
     pub fn add_block(&mut self, node: usize, entry: impl Fn(usize, usize) -> f64) {
+        if let Some(held) = self.held.get_mut(node) {
+            *held += (0..3).map(|i| entry(i, i)).sum::<f64>() / 3.0;
+        }
         for j in 0..3 {
             for i in j..3 {
                 let place = self.system.matrix.place(self.model.start[node], 0, i as u32, j as u32);

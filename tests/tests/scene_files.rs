@@ -176,7 +176,8 @@ fn the_window_holds_stitches_and_shows_the_force() {
     window.press("Step");
     window.wait("a force", |e| e.yarn().is_some_and(|y| y.holds.len() == 2 && y.holds[0].force_n.y > 0.0));
     window.rest();
-    assert!(window.harness.query_by_label("top").is_some());
+    let force = &window.editor().yarn().unwrap().holds[0];
+    assert!(force.what == "top" && window.harness.query_by_label_contains("top: ").is_some());
     window.keep("scene");
     window.press("Let go");
     assert_eq!(clamps(&window), 0);

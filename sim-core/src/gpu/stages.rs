@@ -152,10 +152,7 @@ impl Stages {
                 finish.push(maker.task("draw_back", Some(c), workgroups, None, aliases)?);
             }
         }
-        for (c, chunk) in tables.chunks.iter().enumerate() {
-            let workgroups = chunk.counts.node_count.div_ceil(WIDE);
-            finish.push(maker.task("come_back", Some(c), workgroups, None, &[])?);
-        }
+        finish.push(all("come_back", wide_nodes)?);
         for (c, chunk) in tables.chunks.iter().enumerate() {
             finish.push(maker.task("judge", Some(c), chunk.counts.segments.div_ceil(WIDE), None, &[])?);
         }

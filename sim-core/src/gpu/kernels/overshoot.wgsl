@@ -1,14 +1,19 @@
 // Lengths that segments gain by turning, taken off again: `overshoot::draw_back`. A sweep reads `back` and writes `back_next`.
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> counts: Counts;
-@group(0) @binding(2) var<storage, read> nodes: array<Node>;
-@group(0) @binding(3) var<storage, read> entries: array<u32>;
-@group(0) @binding(4) var<storage, read> segments: array<Segment>;
-@group(0) @binding(5) var<storage, read> position: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> next_position: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read_write> moving: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read> back: array<vec4<f32>>;
-@group(0) @binding(9) var<storage, read_write> back_next: array<vec4<f32>>;
+@group(0) @binding(0) var<uniform> counts: Counts;
+@group(0) @binding(1) var<storage, read> nodes: array<Node>;
+@group(0) @binding(2) var<storage, read> entries: array<u32>;
+@group(0) @binding(3) var<storage, read> segments: array<Segment>;
+@group(0) @binding(4) var<storage, read> position: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> next_position: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> held: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> back: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> back_next: array<vec4<f32>>;
+
+// Mass of a node with what holds it.
+fn firm(node: u32) -> f32 {
+    let h = held[3u * node];
+    return nodes[node].mass + (h.x + h.y + h.z) / 3.0;
+}
 
 // How far one end is drawn to the other.
 fn drawn(own: u32, other: u32) -> vec3<f32> {
@@ -21,7 +26,7 @@ fn drawn(own: u32, other: u32) -> vec3<f32> {
     if length <= reckoned {
         return vec3<f32>(0.0);
     }
-    let share = nodes[other].mass / (nodes[own].mass + nodes[other].mass);
+    let share = firm(other) / (firm(own) + firm(other));
     return DRAWN_PART * share * (length - reckoned) / length * after;
 }
 
@@ -42,14 +47,4 @@ fn draw_back(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
     back_next[own] = vec4<f32>(sum, 0.0);
-}
-
-@compute @workgroup_size(WIDE)
-fn come_back(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= counts.node_count {
-        return;
-    }
-    let own = counts.first_node + id.x;
-    next_position[own] = vec4<f32>(next_position[own].xyz + back[own].xyz, 0.0);
-    moving[own] = vec4<f32>(moving[own].xyz + back[own].xyz / params.h, 0.0);
 }
