@@ -5,7 +5,8 @@
 //! a segment moves all later sliding coordinates of its yarn down by it, and makes a closed yarn so much shorter.
 //!
 //! Of the whole that a yarn is to give, each of those segments gives in proportion to the yarn that it has just then. The yarn slides
-//! meanwhile, so a length of its own for each would be drawn out of some that no longer have it: sewing yarn ran backwards there.
+//! meanwhile, so a length of its own for each would be drawn out of some that no longer have it: sewing yarn ran backwards there, and no
+//! step was small enough.
 //!
 //! How far that has come is part of the state ([`YarnState::taken_in`], 0 to 1), so a fabric that is opened again goes on.
 
