@@ -163,6 +163,7 @@ fn shorten<const K: usize>(turn: &mut [f64; K], length: f64) {
 
 #[cfg(test)]
 mod tests {
+    use super::TakeIn;
     use crate::{Material, Scene, Simulator};
     use std::sync::Arc;
     use stitch_mesh::cable::Cable;
@@ -171,7 +172,7 @@ mod tests {
     use stitch_mesh::lay::lay;
     use stitch_mesh::pieces::{rectangle, tube};
     use stitch_mesh::stitch_mesh::StitchMesh;
-    use stitch_mesh::yarn_net::YarnNet;
+    use stitch_mesh::yarn_net::{TakenIn, YarnNet, YarnState};
 
     /// Unstretched yarn there is, from the sliding coordinates of a simulation.
     fn yarn_length(simulator: &Simulator) -> f64 {
@@ -223,5 +224,29 @@ mod tests {
             let taken: Vec<f64> = lengths.windows(2).map(|w| (w[0] - w[1]) / target).collect();
             assert!((taken[0] - 0.5).abs() < 0.05 && (taken[0] + taken[1] - 1.0).abs() < 1e-6, "{taken:?}");
         }
+    }
+
+    #[test]
+    fn nothing_is_drawn_from_where_there_is_no_yarn() {
+        let size = StitchSize::of_width(3e-3);
+        let net = with_cable(rectangle(8, 6, size).unwrap(), [29, 30, 31, 32, 33]);
+        let take_in = TakeIn::new(&net);
+        // Nearly all the yarn of one segment that is taken in has slid on into the next.
+        let poor = net.taken_in[1].segment;
+        let next = net.next(poor).unwrap();
+        let has = |state: &YarnState| state.sliding[next.index()] - state.sliding[poor.index()];
+        let mut state = net.laid_state();
+        let left = 0.02 * has(&state);
+        state.sliding[next.index()] = state.sliding[poor.index()] + left;
+        let shift = take_in.shifts(&net, &state, 0.5);
+        let before = has(&state);
+        state.sliding.iter_mut().zip(&shift).for_each(|(u, shift)| *u += shift);
+        assert!(has(&state) > 0.4 * before, "{} of {before}", has(&state));
+        // Its yarn gives what it is to give all the same.
+        let yarn = &net.yarns[net.visits[poor.index()].yarn.index()];
+        let of_yarn = |t: &&TakenIn| yarn.visits.contains(&t.segment.0);
+        let wanted: f64 = net.taken_in.iter().filter(of_yarn).map(|t| t.length).sum();
+        let last = yarn.visits.end as usize - 1;
+        assert!(yarn.period.is_none() && (shift[last] + 0.5 * wanted).abs() < 1e-12);
     }
 }
