@@ -7,7 +7,7 @@
 //! # Practice
 //! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
 //! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
-//! yarn, its ends move against each other by more than most of its length. That happens while a net finds its first
+//! yarn, its ends move against each other by more than four fifths of its length. That happens while a net finds its first
 //! shape, if ever.
 
 use crate::assembly::{Start, System};
@@ -45,7 +45,7 @@ pub enum Rejection {
     /// A segment would lose more than half of its yarn.
     #[error("segment {0} loses more than half of its yarn")]
     Shrinking(usize),
-    /// The ends of a segment would move against each other by more than most of its length.
+    /// The ends of a segment would move against each other by more than four fifths of its length.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
     /// More layers of the fabric meet than the GPU has room for.

@@ -130,9 +130,9 @@ impl TakeIn {
         let has = |segment: VisitId| {
             let next = net.next(segment)?;
             let yarn = yarn_of(segment);
-            let around = if next > segment { 0.0 } else { net.yarns[yarn].period? };
-            let shorter = if next > segment { 0.0 } else { state.taken_in * self.of_yarn[yarn] };
-            Some(state.sliding[next.index()] + around - shorter - state.sliding[segment.index()])
+            let turn = || Some(net.yarns[yarn].period? - state.taken_in * self.of_yarn[yarn]);
+            let around = if next > segment { 0.0 } else { turn()? };
+            Some(state.sliding[next.index()] + around - state.sliding[segment.index()])
         };
         let mut all = vec![0.0; net.yarns.len()];
         let mut shift = vec![0.0; net.visits.len()];
