@@ -122,7 +122,7 @@ impl Stepper {
 
     /// The state after a step of `h` from `now`, `time_s` after the scene has begun [s].
     pub fn step(&mut self, now: &Stuck, scene: &Scene, time_s: f64, h: f64) -> Result<Stuck, Rejection> {
-        let mut braces = Braces::default();
+        let mut braces = Braces::new(self.model.segments.len());
         loop {
             let (next, forces) = self.attempt(now, scene, time_s, h, &braces)?;
             let failures = self.judge(&now.state, &next.state)?;

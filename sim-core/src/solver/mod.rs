@@ -70,7 +70,7 @@ const CROSSOVER: usize = 1_500;
 pub(crate) const TOLERANCE: f64 = 5e-4;
 
 /// The same with a complete factorisation, of which each iteration makes the error some hundred times smaller.
-const TOLERANCE_OF_COMPLETE: f64 = 1e-4;
+const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
 
 /// Systems solved directly after one for which that would have been faster: what made that one hard is still there in the next few,
 /// and trying in vain costs as much as solving.
