@@ -15,7 +15,7 @@ use stitch_mesh::dye::Dye;
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 use wgpu::CompareFunction::{Greater, Less};
 
-use self::level::{Batch, Chunk, Level, RUN, SAMPLES, SIDES, SPAN_VERTICES, batches};
+use self::level::{Batch, Chunk, Level, SAMPLES, SIDES, SPAN_VERTICES, batches};
 use self::transport::{ControlPoint, END, lay_out};
 use crate::pipeline::{COLOR_FORMAT, Pipeline, STORAGE, bind_group, bind_group_layout, shader};
 use crate::scene::GrowingBuffer;
@@ -211,10 +211,11 @@ pub(crate) struct YarnPipelines {
     frayed: wgpu::RenderPipeline,
     tube: wgpu::RenderPipeline,
     ribbon: wgpu::RenderPipeline,
+    thread: wgpu::RenderPipeline,
     shadow: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
-    /// Where the triangles of a level start in the buffer, and where those of the last end.
+    /// Where the triangles of a level start in the buffer.
     starts: Vec<u32>,
 }
 
@@ -255,6 +256,13 @@ impl YarnPipelines {
             vertices: &[],
             ..tube
         };
+        let thread = Pipeline {
+            label: "yarn threads",
+            vertex: "thread_vertex",
+            fragment: Some("thread_fragment"),
+            vertices: &[],
+            ..ribbon
+        };
         let shadow = Pipeline {
             label: "yarn shadow",
             vertex: "shadow_vertex",
@@ -266,14 +274,14 @@ impl YarnPipelines {
             vertices: &[],
             ..ribbon
         };
-        let [frayed, tube, ribbon, shadow] =
-            [frayed, tube, ribbon, shadow].map(|pipeline| pipeline.build(device));
+        let [frayed, tube, ribbon, thread, shadow] =
+            [frayed, tube, ribbon, thread, shadow].map(|pipeline| pipeline.build(device));
 
         let mut indices = Vec::new();
-        let mut starts = vec![0];
+        let mut starts = Vec::new();
         for level in Level::all() {
-            indices.extend((0..RUN).flat_map(|span| level.triangles(span)));
             starts.push(indices.len() as u32);
+            indices.extend(level.triangles());
         }
         let triangles = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("yarn triangles"),
@@ -282,7 +290,7 @@ impl YarnPipelines {
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(&indices));
-        Self { frayed, tube, ribbon, shadow, layout, triangles, starts }
+        Self { frayed, tube, ribbon, thread, shadow, layout, triangles, starts }
     }
 
     /// Draws what is in the picture; `scale` as in [`batches`].
@@ -294,12 +302,14 @@ impl YarnPipelines {
         scale: impl Fn(Vec3, f32) -> Option<f32>,
     ) {
         let batches = batches(&mesh.chunks, scale);
-        let (ribbons, tubes) = batches.split_at(batches.partition_point(|batch| batch.level.is_ribbon()));
+        let (flat, tubes) = batches.split_at(batches.partition_point(|batch| batch.level.is_flat()));
+        let (threads, ribbons) = flat.split_at(flat.partition_point(|batch| batch.level.is_thread()));
         let (plain, frayed) = tubes.split_at(tubes.partition_point(|batch| !batch.level.is_frayed()));
         // The widest yarn is nearest and hides some of the rest.
         self.draw_batches(gpu, pass, &self.frayed, mesh, frayed);
         self.draw_batches(gpu, pass, &self.tube, mesh, plain);
         self.draw_batches(gpu, pass, &self.ribbon, mesh, ribbons);
+        self.draw_batches(gpu, pass, &self.thread, mesh, threads);
     }
 
     /// Draws into the shadow map; `scale` as in [`batches`].
@@ -331,9 +341,8 @@ impl YarnPipelines {
         pass.set_bind_group(1, &bind_group(&gpu.device, &self.layout, buffers.to_vec()), &[]);
         pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for batch in batches {
-            let level = batch.level.index();
-            let (start, end) = (self.starts[level], self.starts[level + 1]);
-            let count = (end - start) / RUN * (batch.end - batch.first);
+            let start = self.starts[batch.level.index()];
+            let count = batch.level.indices(batch.end - batch.first);
             pass.draw_indexed(start..start + count, (batch.first * SPAN_VERTICES) as i32, 0..1);
         }
     }

@@ -119,6 +119,25 @@ fn yarn_is_lit_from_the_upper_left_and_round() {
 }
 
 #[test]
+fn yarn_as_wide_as_a_pixel_is_as_light_as_wider_yarn() {
+    // Yarn side by side, with radii of 0.71 and 0.80 pixels of the picture before it is made smaller: threads and ribbons.
+    let mean = |radius: f32| {
+        let yarn = |i: i32| {
+            let points = (-8..=8).map(|k| Vec3::new(0.02 * k as f32, 2.0 * radius * i as f32, 0.0)).collect();
+            YarnCurve::new(points, false, radius, Dye([200, 150, 90]))
+        };
+        let curves = (-40..40).map(yarn).collect();
+        let picture = draw(&Drawing { yarn: YarnCurves { curves }, ..Default::default() }, NamedView::Front);
+        let pixels =
+            (0..40 * 40).map(|i| at(&picture, 0.4 + 0.005 * (i % 40) as f32, 0.4 + 0.005 * (i / 40) as f32));
+        pixels.fold([0; 3], |sum, pixel| [0, 1, 2].map(|c| sum[c] + pixel[c])).map(|sum| sum as f32 / 1600.0)
+    };
+    let [threads, ribbons] = [1.5e-3, 1.7e-3].map(mean);
+    let apart = (0..3).map(|c| (threads[c] - ribbons[c]).abs()).fold(0.0, f32::max);
+    assert!(apart < 4.0, "{threads:?} {ribbons:?}");
+}
+
+#[test]
 fn lines_lie_on_the_surface_that_they_belong_to() {
     let [a, b] = [Vec3::new(-0.1, 0.0, 0.0), Vec3::new(0.1, 0.0, 0.0)];
     let lines = Lines { segments: vec![Segment { ends: [a, b], color: GREEN, width: 4.0 }] };
