@@ -200,7 +200,7 @@ impl SurfacePipelines {
         samples: u32,
         shadows: bool,
     ) -> Self {
-        let module = shader(device, "surface", &[light::WGSL, include_str!("surface.wgsl")]);
+        let module = shader(device, "surface", &[&light::wgsl(shadows), include_str!("surface.wgsl")]);
         let buffer = |stride: usize, attributes| {
             let step_mode = wgpu::VertexStepMode::Vertex;
             Some(wgpu::VertexBufferLayout { array_stride: stride as u64, step_mode, attributes })

@@ -225,13 +225,14 @@ impl YarnPipelines {
         frame: &wgpu::BindGroupLayout,
         lit_frame: &wgpu::BindGroupLayout,
         samples: u32,
+        shadows: bool,
     ) -> Self {
         let device = &gpu.device;
         let layout =
             bind_group_layout(device, "yarn", wgpu::ShaderStages::VERTEX, &[STORAGE, STORAGE, STORAGE]);
-        let constants = constants();
+        let (light, constants) = (light::wgsl(shadows), constants());
         let sources =
-            [light::WGSL, &constants, include_str!("yarn/catmull_rom.wgsl"), include_str!("yarn.wgsl")];
+            [light.as_str(), &constants, include_str!("yarn/catmull_rom.wgsl"), include_str!("yarn.wgsl")];
         let module = shader(device, "yarn", &sources);
         let tube = Pipeline {
             label: "yarn tubes",
