@@ -13,7 +13,7 @@ use glam::Vec3;
 use image::RgbaImage;
 use render::{
     Camera, Drawing, Faces, Lines, NamedView, Polygon, Quality, RenderError, Renderer, Scene, Segment, Solid,
-    Solids, Viewport, palette, read_back, render_image,
+    Solids, Viewport, YarnLayout, palette, read_back, render_image,
 };
 use stitch_mesh::dye::Dye;
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
@@ -284,7 +284,7 @@ fn frame_times() {
         camera.zoom(zoom);
         let mut frame = || {
             let start = std::time::Instant::now();
-            scene.set_yarn(gpu(), &yarn).unwrap();
+            scene.set_yarn(gpu(), &YarnLayout::of(&yarn)).unwrap();
             let update = start.elapsed();
             let mut encoder = gpu().device.create_command_encoder(&Default::default());
             renderer.draw(gpu(), &mut encoder, &viewport, &camera, &scene);

@@ -113,7 +113,7 @@ impl Level {
 }
 
 /// A run of spans of one curve, culled and drawn together.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Chunk {
     /// The first span: the index of its start in the buffer of control points.
     pub first: u32,
