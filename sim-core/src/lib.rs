@@ -17,6 +17,7 @@ mod assembly;
 mod bend;
 mod body;
 mod body_contact;
+mod brace;
 mod bvh;
 mod carry_over;
 mod choice;

@@ -7,10 +7,12 @@
 //! # Practice
 //! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
 //! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
-//! yarn, its ends move against each other by more than four fifths of its length. That happens while a net finds its first
-//! shape, if ever.
+//! yarn, its ends move against each other by more than four fifths of its length or of the yarn's diameter (sewing yarn between crossings
+//! that are closer than it is thick turns at will). Where that is a few segments, they are held and
+//! the step is solved again first (`brace.rs`).
 
 use crate::assembly::{Start, System};
+use crate::brace::{Braces, Excess, Failure};
 use crate::costs::{Costs, Stage, Watch};
 use crate::curves::normal;
 use crate::friction::{Anchors, FrictionSpring, PerYarn, Stack};
@@ -30,7 +32,7 @@ use smallvec::SmallVec;
 use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{Node, YarnState};
 
-/// How far the ends of a segment may move against each other in a step, over its length.
+/// How far the ends of a segment may move against each other in a step, over its length or the diameter of the yarn.
 pub(crate) const LEAP: f64 = 0.8;
 
 /// Why a step was thrown away.
@@ -45,7 +47,7 @@ pub enum Rejection {
     /// A segment would lose more than half of its yarn.
     #[error("segment {0} loses more than half of its yarn")]
     Shrinking(usize),
-    /// The ends of a segment would move against each other by more than four fifths of its length.
+    /// The ends of a segment would move against each other by more than four fifths of its length or of the diameter of its yarn.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
     /// More layers of the fabric meet than the GPU has room for.
@@ -121,6 +123,27 @@ impl Stepper {
 
     /// The state after a step of `h` from `now`, `time_s` after the scene has begun [s].
     pub fn step(&mut self, now: &Stuck, scene: &Scene, time_s: f64, h: f64) -> Result<Stuck, Rejection> {
+        let mut braces = Braces::new(self.model.segments.len());
+        loop {
+            let (next, forces) = self.attempt(now, scene, time_s, h, &braces)?;
+            let failures = self.judge(&now.state, &next.state)?;
+            if failures.is_empty() {
+                self.body_forces = forces;
+                return Ok(next);
+            }
+            braces.hold(&failures)?;
+        }
+    }
+
+    /// The state after a step with these braces, whether or not it may follow, and the forces of the bodies [N].
+    pub(crate) fn attempt(
+        &mut self,
+        now: &Stuck,
+        scene: &Scene,
+        time_s: f64,
+        h: f64,
+        braces: &Braces,
+    ) -> Result<(Stuck, Vec<DVec3>), Rejection> {
         let mut watch = Watch::start();
         let state = &now.state;
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
@@ -136,6 +159,7 @@ impl Stepper {
         self.add_layers(state, scene, h);
         let touching = self.add_bodies(state, scene, time_s, h);
         let held = self.add_pins(state, scene, time_s + h, h);
+        braces.add(&self.model, &mut self.system, &self.materials, state, h);
         watch.lap(&mut self.costs, Stage::Contacts);
         let mut solution = self.rates(state);
         self.costs.attempts += 1;
@@ -151,10 +175,8 @@ impl Stepper {
         let forces = body_forces(scene, &touching, &next.velocity, h);
         let firm: Vec<f64> = self.masses.iter().zip(&self.held).map(|(mass, held)| mass + held).collect();
         draw_back(&self.model, &firm, state, &mut next, h);
-        self.judge(state, &next)?;
-        self.body_forces = forces;
         watch.lap(&mut self.costs, Stage::Rest);
-        Ok(Stuck { state: next, anchors })
+        Ok((Stuck { state: next, anchors }, forces))
     }
 
     /// Compression from the forces just assembled, and the friction springs that it carries. Gives the moved anchors.
@@ -281,25 +303,28 @@ impl Stepper {
         }
     }
 
-    /// Whether `next` may follow `state`.
-    fn judge(&self, state: &YarnState, next: &YarnState) -> Result<(), Rejection> {
+    /// The segments because of which `next` may not follow `state`.
+    pub(crate) fn judge(&self, state: &YarnState, next: &YarnState) -> Result<Vec<Failure>, Rejection> {
         if !next.is_finite() {
             return Err(Rejection::NotFinite);
         }
-        for (i, term) in self.model.segments.iter().enumerate() {
+        let failure = |(segment, term): (usize, &SegmentTerm)| {
             let [a, b] = term.stencil.nodes.map(|n| n.index());
             let [ua, ub] = term.stencil.visits.map(|v| v.index());
             let yarn = |s: &YarnState| s.sliding[ub] + term.stencil.turn[1] - s.sliding[ua];
             let span = |s: &YarnState| s.position[b] - s.position[a];
-            if yarn(next) < 0.5 * yarn(state) {
-                return Err(Rejection::Shrinking(i));
-            }
-            let length = span(state).length().max(yarn(state));
-            if span(next).distance(span(state)) > LEAP * length {
-                return Err(Rejection::Leaping(i));
-            }
-        }
-        Ok(())
+            let diameter = 2.0 * self.materials[term.dye as usize].drawn_radius;
+            let length = span(state).length().max(yarn(state)).max(diameter);
+            let excess = if yarn(next) < 0.5 * yarn(state) {
+                Excess::Shrinking
+            } else if span(next).distance(span(state)) > LEAP * length {
+                Excess::Leaping
+            } else {
+                return None;
+            };
+            Some(Failure { segment, excess })
+        };
+        Ok(self.model.segments.iter().enumerate().filter_map(failure).collect())
     }
 }
 

@@ -1,16 +1,22 @@
-//! Groups of nodes for a complete factorisation: geometric nested dissection.
+//! Groups of nodes for a complete factorisation: nested dissection.
 //!
 //! # Theory
-//! George, *Nested Dissection of a Regular Finite Element Mesh*. The nodes on one side of a plane that touch the other side
-//! separate the fabric; eliminated last, they keep the two sides from filling each other in. Each side is dissected the
-//! same way. Fabric is a surface, so n nodes fill in n log n entries and take n^1.5 operations.
+//! George, *Nested Dissection of a Regular Finite Element Mesh*. A separator, eliminated last, keeps the two sides from filling each
+//! other in. Each side is dissected the same way. Fabric is a surface, so n nodes fill in n log n entries and take n^1.5
+//! operations, in proportion to the cube of the width of separators.
+//!
+//! Schild and Sommer, *On Balanced Separators in Road Networks*: of nodes in their order along a line the first and the last part are
+//! two sets, between which the smallest separator is a matter of paths (`separator.rs`).
 //!
 //! # Practice
-//! A plane is chosen out of several along each axis for the smallest separator. Where the fabric was laid tells nearness
-//! well enough, and is known before the first step. Separators, and pieces too small to be cut, are
-//! groups. What the
-//! first plane leaves on both sides is factorised beside each other, as in `parts.rs`.
+//! Lines are the three axes. Where the fabric was laid tells nearness well enough, and is known before the first step.
+//! Taken is the separator with the fewest operations by a rule of thumb; it is a third as wide as the nodes on one side of a plane
+//! that touch the other side, and a sweater of 10 400 loops takes 37 · 10⁹ operations to factorise instead of 97 · 10⁹.
+//!
+//! Separators, and pieces too small to be cut, are groups. What the first separator leaves on both sides is factorised beside
+//! each other, as in `parts.rs`.
 
+use super::separator::{Band, Side};
 use crate::model::Model;
 use glam::DVec3;
 use std::ops::Range;
@@ -19,10 +25,10 @@ use std::ops::Range;
 const LEAF: usize = 8;
 
 /// Unknowns in a group, about; those of a large separator go into several.
-const MOST_UNKNOWNS: u32 = 96;
+const MOST_UNKNOWNS: u32 = 256;
 
-/// Places of the planes that are tried, as parts of the nodes on one side.
-const CUTS: [f64; 9] = [0.42, 0.44, 0.46, 0.48, 0.5, 0.52, 0.54, 0.56, 0.58];
+/// The part of all nodes that are in the first set, and in the second.
+const PART: f64 = 0.3;
 
 /// The nodes of `model` in groups, in the order of their elimination, and the ranges of both halves and of what joins them.
 pub(crate) fn dissected(model: &Model) -> (Vec<Vec<u32>>, Vec<Range<usize>>) {
@@ -33,35 +39,50 @@ pub(crate) fn dissected(model: &Model) -> (Vec<Vec<u32>>, Vec<Range<usize>>) {
             neighbours[b as usize].push(a as u32);
         }
     }
-    let mut dissection = Dissection {
+    let fabric = Fabric {
         position: model.net.nodes.iter().map(|n| n.position).collect(),
         size: model.start.windows(2).map(|s| s[1] - s[0]).collect(),
         neighbours,
-        side: vec![0; count],
-        stamp: 0,
-        groups: Vec::new(),
     };
-    let (left, right, joint) = match dissection.best_cut((0..count as u32).collect()) {
-        Ok(Cut { left, right, separator, .. }) => (left, right, separator),
-        Err(nodes) => (nodes, Vec::new(), Vec::new()),
+    let (halves, joint) = match Dissection::new(&fabric).best_cut((0..count as u32).collect()) {
+        Ok(Cut { sides, separator }) => (sides, separator),
+        Err(nodes) => ([nodes, Vec::new()], Vec::new()),
     };
-    let mut ends = Vec::new();
-    for half in [left, right] {
+    let dissect = |half| {
+        let mut dissection = Dissection::new(&fabric);
         dissection.dissect(half);
-        ends.push(dissection.groups.len());
-    }
-    dissection.add(&joint);
-    let count = dissection.groups.len();
-    (dissection.groups, vec![0..ends[0], ends[0]..ends[1], ends[1]..count])
+        dissection.groups
+    };
+    let [left, right] = halves;
+    let (mut groups, right) = rayon::join(|| dissect(left), || dissect(right));
+    let mut ends = vec![groups.len()];
+    groups.extend(right);
+    ends.push(groups.len());
+    let mut last = Dissection::new(&fabric);
+    last.add(joint);
+    groups.extend(last.groups);
+    let count = groups.len();
+    (groups, vec![0..ends[0], ends[0]..ends[1], ends[1]..count])
 }
 
-struct Dissection {
+/// Operations of the complete factorisation of a fabric of so many nodes, about: 4 300 … 4 700 n^1.5 for sweaters of 1 000 … 57 000 loops.
+pub(crate) fn operations(nodes: usize) -> f64 {
+    4_500.0 * (nodes as f64).powf(1.5)
+}
+
+/// The graph of a fabric's nodes.
+struct Fabric {
+    /// Where each was laid.
     position: Vec<DVec3>,
     /// Unknowns of each node.
     size: Vec<u32>,
     neighbours: Vec<Vec<u32>>,
-    /// The stamp of the set that each node was last put in.
-    side: Vec<u32>,
+}
+
+struct Dissection<'a> {
+    fabric: &'a Fabric,
+    /// The stamp of the set that each node was last put in, and its place there.
+    place: Vec<(u32, u32)>,
     stamp: u32,
     /// Nodes in the order of their elimination.
     groups: Vec<Vec<u32>>,
@@ -69,37 +90,42 @@ struct Dissection {
 
 /// A way to cut a set of nodes.
 struct Cut {
-    left: Vec<u32>,
-    right: Vec<u32>,
+    sides: [Vec<u32>; 2],
     separator: Vec<u32>,
-    /// Unknowns in the separator.
-    weight: u32,
 }
 
-impl Dissection {
+impl<'a> Dissection<'a> {
+    fn new(fabric: &'a Fabric) -> Self {
+        Self { fabric, place: vec![(0, 0); fabric.size.len()], stamp: 0, groups: Vec::new() }
+    }
+
     fn dissect(&mut self, nodes: Vec<u32>) {
         if nodes.is_empty() {
             return;
         }
         match self.best_cut(nodes) {
-            Ok(Cut { left, right, separator, .. }) => {
-                self.dissect(left);
-                self.dissect(right);
-                self.add(&separator);
+            Ok(Cut { sides, separator }) => {
+                sides.into_iter().for_each(|side| self.dissect(side));
+                self.add(separator);
             }
             Err(nodes) => self.groups.push(nodes),
         }
     }
 
-    /// Adds `nodes`, in groups of not too many unknowns.
-    fn add(&mut self, nodes: &[u32]) {
+    /// Adds a separator, in groups of not too many unknowns, along its length: what it separates touches a stretch of it.
+    fn add(&mut self, mut separator: Vec<u32>) {
+        let along = |n: &u32| self.fabric.position[*n as usize];
+        let low = separator.iter().map(along).fold(DVec3::INFINITY, DVec3::min);
+        let high = separator.iter().map(along).fold(DVec3::NEG_INFINITY, DVec3::max);
+        let axis = (high - low).max_position();
+        separator.sort_by(|a, b| along(a)[axis].total_cmp(&along(b)[axis]));
         let mut room = 0;
-        for node in nodes {
-            let size = self.size[*node as usize];
+        for node in separator {
+            let size = self.fabric.size[node as usize];
             match self.groups.last_mut().filter(|_| room >= size) {
-                Some(group) => group.push(*node),
+                Some(group) => group.push(node),
                 None => {
-                    self.groups.push(vec![*node]);
+                    self.groups.push(vec![node]);
                     room = MOST_UNKNOWNS;
                 }
             }
@@ -107,38 +133,74 @@ impl Dissection {
         }
     }
 
-    /// The cut with the smallest separator, or the nodes again if they are too few.
+    /// The cut that makes for the fewest operations, or the nodes again if they are too few.
     fn best_cut(&mut self, nodes: Vec<u32>) -> Result<Cut, Vec<u32>> {
         if nodes.len() <= LEAF {
             return Err(nodes);
         }
-        let mut best: Option<Cut> = None;
+        let mut best: Option<(f64, Cut)> = None;
         for axis in 0..3 {
             let mut sorted = nodes.clone();
-            let place = |n: &u32| self.position[*n as usize][axis];
-            sorted.sort_by(|a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
-            for part in CUTS {
-                let (left, right) = sorted.split_at((part * sorted.len() as f64) as usize);
-                let [one, other] = [self.cut(left, right), self.cut(right, left)];
-                let cut = if one.weight <= other.weight { one } else { other };
-                if best.as_ref().is_none_or(|b| cut.weight < b.weight) {
-                    best = Some(cut);
+            let along = |n: &u32| self.fabric.position[*n as usize][axis];
+            sorted.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
+            for cut in self.cuts(&sorted) {
+                let operations = self.operations(&cut);
+                if best.as_ref().is_none_or(|(least, _)| operations < *least) {
+                    best = Some((operations, cut));
                 }
             }
         }
-        best.ok_or(nodes)
+        best.map(|(_, cut)| cut).ok_or(nodes)
     }
 
-    fn cut(&mut self, left: &[u32], right: &[u32]) -> Cut {
+    /// Operations that a cut makes for, about: of a separator, with what it is joined to, and of the sides, beside each other.
+    fn operations(&self, cut: &Cut) -> f64 {
+        let unknowns: u32 = cut.separator.iter().map(|n| self.fabric.size[*n as usize]).sum();
+        let larger = cut.sides.iter().map(Vec::len).max().unwrap_or_default();
+        4.0 * f64::from(unknowns).powi(3) + 2.0 * operations(larger)
+    }
+
+    /// The smallest separators between the first and the last of `sorted`.
+    fn cuts(&mut self, sorted: &[u32]) -> [Cut; 2] {
+        let count = sorted.len();
+        let first = ((PART * count as f64) as usize).max(1);
+        let band = first..count - first;
         self.stamp += 1;
-        for n in right {
-            self.side[*n as usize] = self.stamp;
+        for (i, n) in sorted.iter().enumerate() {
+            self.place[*n as usize] = (self.stamp, i as u32);
         }
-        let touches =
-            |n: &&u32| self.neighbours[**n as usize].iter().any(|m| self.side[*m as usize] == self.stamp);
-        let (separator, rest): (Vec<u32>, Vec<u32>) = left.iter().partition(touches);
-        let weight = separator.iter().map(|n| self.size[*n as usize]).sum();
-        Cut { left: rest, right: right.to_vec(), separator, weight }
+        let near = |n: u32| {
+            let places = self.fabric.neighbours[n as usize].iter().map(|m| self.place[*m as usize]);
+            places.filter(|(stamp, _)| *stamp == self.stamp).map(|(_, at)| at as usize)
+        };
+        // Where seams join the ends, what touches the last is in the separator itself.
+        let seam = |i: usize| i < first && near(sorted[i]).any(|at| at >= band.end);
+        let mut starts = vec![0];
+        let (mut neighbours, mut touches) = (Vec::new(), [Vec::new(), Vec::new()]);
+        for i in band.clone() {
+            neighbours.extend(near(sorted[i]).filter(|at| band.contains(at)).map(|at| (at - first) as u32));
+            starts.push(neighbours.len() as u32);
+            touches[0].push(near(sorted[i]).any(|at| at < first));
+            touches[1].push(near(sorted[i]).any(|at| at >= band.end));
+        }
+        let separated = Band { first: starts, neighbours, touches }.separated();
+        separated.map(|sides| {
+            let mut cut = Cut { sides: [Vec::new(), Vec::new()], separator: Vec::new() };
+            for (i, n) in sorted.iter().enumerate() {
+                let side = match i {
+                    i if seam(i) => Side::Separator,
+                    i if i < first => Side::First,
+                    i if i >= band.end => Side::Second,
+                    i => sides[i - first],
+                };
+                match side {
+                    Side::First => cut.sides[0].push(*n),
+                    Side::Second => cut.sides[1].push(*n),
+                    Side::Separator => cut.separator.push(*n),
+                }
+            }
+            cut
+        })
     }
 }
 

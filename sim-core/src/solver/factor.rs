@@ -16,8 +16,9 @@ use super::gradients::Preconditioner;
 use super::matrix::BlockMatrix;
 use super::packed::{LANES, Packed, Scratch, Tile, pack};
 use super::panel;
-use super::pattern::{Group, Part, Pattern};
-use faer::linalg::matmul::triangular;
+use super::pattern::{Change, Group, Part, Pattern, Run};
+use faer::linalg::matmul::{matmul, triangular};
+use faer::prelude::ReborrowMut;
 use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 use triangular::BlockStructure::{Rectangular, TriangularLower};
@@ -196,38 +197,92 @@ fn eliminate(
     let joint_start = pattern.groups.last().map_or(0, |g| g.front.end) - outer.len();
     for group in groups {
         let (n, m) = (group.unknowns.len(), group.rows.len());
-        let front = &mut fronts[group.front.start - part.fronts.start..group.front.end - part.fronts.start];
+        let later_start = group.front.end;
+        let (own, later) = fronts.split_at_mut(group.front.end - part.fronts.start);
+        let front = &mut own[group.front.start - part.fronts.start..];
         for i in 0..n {
             front[i * (n + m) + i] += shift;
         }
         inverse.resize(n * n, 0.0);
         panel::eliminate(front, &mut inverse, n).map_err(|_| NoFactor)?;
-        let product = &mut product[..m * m];
-        let rows = MatRef::from_column_major_slice(front, n + m, n).subrows(n, m);
-        triangular::matmul(
-            MatMut::from_column_major_slice_mut(product, m, m),
-            TriangularLower,
-            Accum::Replace,
-            rows,
-            Rectangular,
-            rows.transpose(),
-            Rectangular,
-            -1.0,
-            Par::Seq,
-        );
         let scale = &mut columns[group.unknowns.start - part.unknowns.start..][..n];
         let packed = group.tiles.start - part.tiles.start..group.tiles.end - part.tiles.start;
         pack(&inverse, front, scale, &mut tiles[packed]);
-        for run in &group.runs {
-            let (from, to, len) = (run.from as usize, run.to as usize, run.len as usize);
-            let changed = match to.checked_sub(joint_start).filter(|_| !outer.is_empty()) {
-                Some(to) => &mut outer[to..to + len],
-                None => &mut fronts[to - part.fronts.start..to - part.fronts.start + len],
-            };
-            changed.iter_mut().zip(&product[from..from + len]).for_each(|(entry, change)| *entry += change);
+        let rows = MatRef::from_column_major_slice(front, n + m, n).subrows(n, m);
+        for changes in group.changes.chunk_by(|a, b| !a.in_place && !b.in_place) {
+            let first = changes[0].columns.start as usize;
+            let (height, width) = (m - first, changes[changes.len() - 1].columns.end as usize - first);
+            let (below, beside) = (rows.subrows(first, height), rows.subrows(first, width).transpose());
+            if !changes[0].in_place {
+                multiply(&mut product[..height * width], below, beside);
+            }
+            for change in changes {
+                let fronts = match change.front.checked_sub(joint_start).filter(|_| !outer.is_empty()) {
+                    Some(start) => &mut outer[start..],
+                    None => &mut later[change.front - later_start..],
+                };
+                if change.in_place {
+                    change.work_out(below, beside, &group.rows, fronts);
+                } else {
+                    change.add(&product[..height * width], height, first, &group.rows, fronts);
+                }
+            }
         }
     }
     Ok(())
+}
+
+/// Sets the first columns of the product of `rows` with themselves, from their diagonal down, to what is taken away.
+fn multiply(product: &mut [f32], rows: MatRef<f32>, beside: MatRef<f32>) {
+    let (height, width) = (rows.nrows(), beside.ncols());
+    let (diagonal, below) =
+        MatMut::from_column_major_slice_mut(product, height, width).split_at_row_mut(width);
+    triangular::matmul(
+        diagonal,
+        TriangularLower,
+        Accum::Replace,
+        rows.subrows(0, width),
+        Rectangular,
+        beside,
+        Rectangular,
+        -1.0,
+        Par::Seq,
+    );
+    if height > width {
+        matmul(below, Accum::Replace, rows.subrows(width, height - width), beside, -1.0, Par::Seq);
+    }
+}
+
+impl Change {
+    /// Works out the product of rows of a group with those `beside` and takes it away from a later front, at the start of `fronts`.
+    fn work_out(&self, below: MatRef<f32>, beside: MatRef<f32>, rows: &[u32], fronts: &mut [f32]) {
+        let column = (rows[self.columns.start as usize] - self.first_unknown) as usize;
+        let width = self.columns.len();
+        let front = &mut fronts[column * self.height..(column + width) * self.height];
+        let mut front = MatMut::from_column_major_slice_mut(front, self.height, width);
+        for run in &self.runs {
+            let [from, to, len] = [run.from - self.columns.start, run.to, run.len].map(|x| x as usize);
+            let changed = front.rb_mut().subrows_mut(to, len);
+            matmul(changed, Accum::Add, below.subrows(from, len), beside, -1.0, Par::Seq);
+        }
+    }
+
+    /// Adds what is in `product`, whose first row and column are number `first`, to a later front, at the start of `fronts`.
+    fn add(&self, product: &[f32], height: usize, first: usize, rows: &[u32], fronts: &mut [f32]) {
+        for j in self.columns.clone().map(|j| j as usize) {
+            let start = self.height * (rows[j] - self.first_unknown) as usize;
+            let column = &mut fronts[start..start + self.height];
+            let product = &product[(j - first) * height..(j - first + 1) * height];
+            for Run { from, to, len } in &self.runs {
+                // Above the diagonal is nothing.
+                let [from, to, len] = [*from, *to, *len].map(|x| x as usize);
+                let skipped = j.saturating_sub(from).min(len);
+                let changed = &mut column[to + skipped..to + len];
+                let by = &product[from + skipped - first..from + len - first];
+                changed.iter_mut().zip(by).for_each(|(entry, change)| *entry += change);
+            }
+        }
+    }
 }
 
 /// Solves with a factor.

@@ -41,6 +41,7 @@ mod panel;
 mod parts;
 pub(crate) mod pattern;
 pub(crate) mod product;
+mod separator;
 pub(crate) mod tail;
 
 use crate::costs::{Costs, Stage, Watch, Work};
@@ -71,18 +72,27 @@ pub(crate) const TOLERANCE: f64 = 5e-4;
 /// The same with a complete factorisation, of which each iteration makes the error some hundred times smaller.
 const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
 
-/// Systems solved directly after one that conjugate gradients failed on: what made that one hard is still there in the next
-/// few, and trying in vain costs as much as solving.
-const DIRECT_AFTER_FAILURE: u32 = 8;
+/// Systems solved directly after one for which that would have been faster: what made that one hard is still there in the next few,
+/// and trying in vain costs as much as solving.
+const DIRECT_AFTER: u32 = 16;
 
-/// Iterations after which to give up; by then a direct solution would have been faster, where there is one.
+/// Unknowns above which nothing is solved directly: it takes gigabytes. A step that fails is taken again in two.
+const MOST_DIRECT: usize = 1_500_000;
+
+/// Iterations after which to give up; a direct solution is faster then, where there is one.
 const MOST_ITERATIONS: usize = 80;
-
-/// Unknowns above which nothing is solved directly: it takes minutes and gigabytes. The step fails, and is taken again in two.
-const MOST_DIRECT: usize = 200_000;
 
 /// Iterations after which to give up where nothing else is left: the systems of shorter steps take fewer.
 const MOST_ITERATIONS_ALONE: usize = 240;
+
+/// Time of an operation of a complete factorisation, over that of reading a byte in an iteration.
+const OPERATION_BY_BYTE: f64 = 0.1;
+
+/// Iterations that a complete factorisation leaves to be done, for the tail, counted as those with an incomplete one: 6 of twice the time.
+const ITERATIONS_OF_TAIL: usize = 12;
+
+/// Iterations that are over twice what a complete factorisation would have taken.
+const TWICE: usize = 2;
 
 /// Iterations after which to give up with a complete factorisation, which leaves rounding and the tail to them.
 const MOST_ITERATIONS_OF_TAIL: usize = 400;
@@ -102,6 +112,8 @@ pub(crate) struct Solver {
     incomplete: Option<Factor>,
     /// Made when it is first needed.
     complete: Option<Factor>,
+    /// Whether the complete one is used as soon as it is the faster, and not only where the other fails.
+    adapts: bool,
     /// Systems to go before the incomplete factorisation is tried again.
     direct_for: u32,
 }
@@ -109,33 +121,39 @@ pub(crate) struct Solver {
 impl Solver {
     /// Solves systems with the pattern of `matrix` by `method`, or by the faster one.
     pub fn new(model: &Model, matrix: &BlockMatrix, method: Option<Method>) -> Self {
-        let faster = if matrix.dof_count() > CROSSOVER { Method::Iterative } else { Method::Direct };
-        match method.unwrap_or(faster) {
-            Method::Direct => Self::direct(model, matrix),
-            Method::Iterative => Self::iterative(model, matrix),
+        let small = matrix.dof_count() <= CROSSOVER;
+        match method {
+            Some(Method::Direct) => Self::direct(model, matrix),
+            Some(Method::Iterative) => Self::iterative(model, matrix),
+            None if small => Self::direct(model, matrix),
+            None => Self { adapts: true, ..Self::iterative(model, matrix) },
         }
     }
 
-    /// How it solves.
+    /// How it solves the next system.
     pub fn method(&self) -> Method {
-        if self.incomplete.is_some() { Method::Iterative } else { Method::Direct }
+        if self.incomplete.is_some() && self.direct_for == 0 { Method::Iterative } else { Method::Direct }
     }
 
     /// Solves by a complete factorisation.
     pub fn direct(model: &Model, matrix: &BlockMatrix) -> Self {
         let complete = Factor::new(Pattern::complete(model, matrix));
-        Self { incomplete: None, complete: Some(complete), direct_for: 0 }
+        Self { incomplete: None, complete: Some(complete), adapts: false, direct_for: 0 }
     }
 
     /// Solves by an incomplete factorisation, and where that fails by a complete one if the system is not too large.
     pub fn iterative(model: &Model, matrix: &BlockMatrix) -> Self {
         let incomplete = Factor::new(Pattern::incomplete(model, matrix));
-        Self { incomplete: Some(incomplete), complete: None, direct_for: 0 }
+        Self { incomplete: Some(incomplete), complete: None, adapts: false, direct_for: 0 }
     }
 
     /// What it has to do.
     pub fn work(&self, matrix: &BlockMatrix) -> Work {
-        let factor = self.incomplete.as_ref().or(self.complete.as_ref());
+        let (first, second) = match self.method() {
+            Method::Iterative => (&self.incomplete, &self.complete),
+            Method::Direct => (&self.complete, &self.incomplete),
+        };
+        let factor = first.as_ref().or(second.as_ref());
         let (bytes, factorisation_operations) = factor.map_or((0, 0), Factor::work);
         let matrix_bytes = size_of_val(&matrix.value[..]) as u64;
         Work { iteration_bytes: 2 * bytes + matrix_bytes, factorisation_operations }
@@ -155,13 +173,22 @@ impl Solver {
             self.direct_for -= 1;
         } else if let Some(incomplete) = &mut self.incomplete {
             let alone = matrix.dof_count() > MOST_DIRECT;
-            let most = if alone { MOST_ITERATIONS_ALONE } else { MOST_ITERATIONS };
+            let as_fast = iterations_as_fast(model, matrix, incomplete);
+            let most = match (alone, self.adapts) {
+                (true, _) => MOST_ITERATIONS_ALONE,
+                (false, true) => TWICE * as_fast,
+                (false, false) => MOST_ITERATIONS,
+            };
+            let before = costs.iterations;
             let solved = factorise_and_iterate(matrix, incomplete, nodes, rhs, x, (most, TOLERANCE), costs);
+            let slow = self.adapts && costs.iterations - before > as_fast as u64;
+            if !alone && (slow || solved.is_err()) {
+                self.direct_for = DIRECT_AFTER;
+            }
             if alone || solved.is_ok() {
                 return solved;
             }
             tracing::debug!("the incomplete factorisation failed, solving directly");
-            self.direct_for = DIRECT_AFTER_FAILURE;
         }
         let complete = match &mut self.complete {
             Some(complete) => complete,
@@ -177,6 +204,13 @@ impl Solver {
             costs,
         )
     }
+}
+
+/// Iterations with an incomplete factorisation that take as long as a complete one.
+fn iterations_as_fast(model: &Model, matrix: &BlockMatrix, incomplete: &Factor) -> usize {
+    let bytes = 2 * incomplete.work().0 + size_of_val(&matrix.value[..]) as u64;
+    let operations = dissection::operations(model.net.nodes.len());
+    (OPERATION_BY_BYTE * operations / bytes as f64) as usize + ITERATIONS_OF_TAIL
 }
 
 /// Replaces the guess in `x` by the solution, with a factor to be made, in at most so many iterations and to such a tolerance.

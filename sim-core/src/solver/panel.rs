@@ -8,25 +8,56 @@
 //! # Practice
 //! Every operation is a long column minus four others, which stay in the first cache. A front of 40 unknowns and 85 rows takes 5 µs,
 //! and 2 for U; the factorisation, triangular solve and inverse of a general library take 26, as their blocks are made for larger
-//! matrices. (Q Qᵀ is another matter: there the library is the faster.)
+//! matrices. (Q Qᵀ is another matter: there the library is the faster.) Of the large fronts of a complete factorisation
+//! [`BLOCK`] columns are done like this, then the library takes them away from all columns behind.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
 
 /// Columns taken away at once.
 const BESIDE: usize = 4;
+
+/// Columns that are done before they are taken away from the others.
+const BLOCK: usize = 48;
 
 /// A pivot is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NotPositive;
 
 /// Turns the front (D; P), of `n` columns one after the other, into (C; Q), and sets `inverse`, the columns of an n × n matrix, to C⁻ᵀ.
-/// Above the diagonal of C remains what was there.
+/// What is above the diagonal of C is of no use.
 pub(crate) fn eliminate(front: &mut [f32], inverse: &mut [f32], n: usize) -> Result<(), NotPositive> {
-    pulp::Arch::new().dispatch(Elimination { front, inverse, n })
+    let height = front.len() / n.max(1);
+    for first in (0..n).step_by(BLOCK) {
+        let width = BLOCK.min(n - first);
+        let (done, behind) = front[first * height..].split_at_mut(width * height);
+        pulp::Arch::new().dispatch(Elimination { columns: done, height, first })?;
+        if !behind.is_empty() {
+            let (start, count) = (first + width, n - first - width);
+            let done = MatRef::from_column_major_slice(done, height, width).submatrix(
+                start,
+                0,
+                height - start,
+                width,
+            );
+            let behind = MatMut::from_column_major_slice_mut(behind, height, count).submatrix_mut(
+                start,
+                0,
+                height - start,
+                count,
+            );
+            matmul(behind, Accum::Add, done, done.subrows(0, count).transpose(), -1.0, Par::Seq);
+        }
+    }
+    pulp::Arch::new().dispatch(Inversion { front, inverse, n });
+    Ok(())
 }
 
+/// Eliminates columns of a front from which those before are taken away, the first being number `first` in the front.
 struct Elimination<'a> {
-    front: &'a mut [f32],
-    inverse: &'a mut [f32],
-    n: usize,
+    columns: &'a mut [f32],
+    height: usize,
+    first: usize,
 }
 
 impl pulp::WithSimd for Elimination<'_> {
@@ -34,13 +65,13 @@ impl pulp::WithSimd for Elimination<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
-        let Self { front, inverse, n } = self;
-        let height = front.len() / n.max(1);
-        for j in 0..n {
-            let (before, column) = front[..(j + 1) * height].split_at_mut(j * height);
-            let column = &mut column[j..];
-            let factor = |k: usize| before[k * height + j];
-            take_away(column, j, |k| &before[k * height + j..(k + 1) * height], factor);
+        let Self { columns, height, first } = self;
+        for j in 0..columns.len() / height {
+            let (before, column) = columns[..(j + 1) * height].split_at_mut(j * height);
+            let row = first + j;
+            let column = &mut column[row..];
+            let factor = |k: usize| before[k * height + row];
+            take_away(column, j, |k| &before[k * height + row..(k + 1) * height], factor);
             let pivot = column[0];
             if pivot.is_nan() || pivot <= 0.0 {
                 return Err(NotPositive);
@@ -49,15 +80,36 @@ impl pulp::WithSimd for Elimination<'_> {
             for x in column {
                 *x *= by;
             }
-            let (before_inverse, column) = inverse[..(j + 1) * n].split_at_mut(j * n);
+        }
+        Ok(())
+    }
+}
+
+/// Sets `inverse` to C⁻ᵀ.
+struct Inversion<'a> {
+    front: &'a [f32],
+    inverse: &'a mut [f32],
+    n: usize,
+}
+
+impl pulp::WithSimd for Inversion<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { front, inverse, n } = self;
+        let height = front.len() / n.max(1);
+        for j in 0..n {
+            let factor = |k: usize| front[k * height + j];
+            let (before, column) = inverse[..(j + 1) * n].split_at_mut(j * n);
             column.fill(0.0);
-            take_away(&mut column[..j], j, |k| &before_inverse[k * n..k * n + j], factor);
+            take_away(&mut column[..j], j, |k| &before[k * n..k * n + j], factor);
             column[j] = 1.0;
+            let by = 1.0 / factor(j);
             for x in &mut column[..=j] {
                 *x *= by;
             }
         }
-        Ok(())
     }
 }
 
@@ -94,7 +146,7 @@ mod tests {
     #[test]
     fn panels_are_factorised() {
         let number = |i: usize| crate::noise::unit_hash(i as u64) as f32 - 0.5;
-        for (n, m) in [(1, 0), (2, 3), (7, 9), (40, 85)] {
+        for (n, m) in [(1, 0), (2, 3), (7, 9), (40, 85), (150, 60)] {
             let height = n + m;
             let entry = |i: usize, j: usize| {
                 let (i, j) = (i.max(j), i.min(j));

@@ -17,15 +17,34 @@ use super::matrix::BlockMatrix;
 use super::packed::tile_count;
 use super::parts::sort_into_parts;
 use crate::model::Model;
+use rayon::prelude::*;
 use std::ops::Range;
 
-/// Neighbouring entries of the product of a group's rows with themselves, and where they are subtracted.
+/// Neighbouring rows of a group that follow each other in the front of a later group too.
 pub(crate) struct Run {
-    /// Place in the product, an m × m matrix stored by columns.
+    /// The first of them among the rows of the group.
     pub from: u32,
-    /// Place in the factor.
+    /// The same in the later front.
     pub to: u32,
     pub len: u32,
+}
+
+/// Entries in a run, in the mean, from which a product is better worked out in place than copied there.
+const LONG: usize = 32;
+
+/// What the elimination of a group does to the front of a later one.
+pub(crate) struct Change {
+    /// Those of the rows that are unknowns of the later group.
+    pub columns: Range<u32>,
+    /// First unknown of the later group.
+    pub first_unknown: u32,
+    /// Start of its front in the factor, and rows of that in all.
+    pub front: usize,
+    pub height: usize,
+    /// The rows from the first of the columns on, as far as they are in the later front: those of its columns.
+    pub runs: Vec<Run>,
+    /// Whether the columns follow each other there too and the runs are long: then it is worked out where it goes.
+    pub in_place: bool,
 }
 
 /// Unknowns that are eliminated at once.
@@ -39,7 +58,7 @@ pub(crate) struct Group {
     /// The same, packed.
     pub tiles: Range<usize>,
     /// What its elimination does to later fronts.
-    pub runs: Vec<Run>,
+    pub changes: Vec<Change>,
 }
 
 /// Groups that can be eliminated without the other parts.
@@ -95,10 +114,10 @@ impl Pattern {
             let (front, tiles) = groups.last().map_or((0, 0), |g| (g.front.end, g.tiles.end));
             let front = front..front + (unknowns.len() + rows.len()) * unknowns.len();
             let tiles = tiles..tiles + tile_count(unknowns.len(), rows.len());
-            groups.push(Group { unknowns, rows, front, tiles, runs: Vec::new() });
+            groups.push(Group { unknowns, rows, front, tiles, changes: Vec::new() });
         }
-        let runs: Vec<Vec<Run>> = groups.iter().map(|group| runs(&groups, &order, &group.rows)).collect();
-        groups.iter_mut().zip(runs).for_each(|(group, runs)| group.runs = runs);
+        let changes: Vec<_> = groups.par_iter().map(|group| changes(&groups, &order, &group.rows)).collect();
+        groups.iter_mut().zip(changes).for_each(|(group, changes)| group.changes = changes);
         let mut target = Vec::with_capacity(matrix.row.len());
         for j in 0..matrix.dof_count() {
             for row in &matrix.row[matrix.column[j] as usize..matrix.column[j + 1] as usize] {
@@ -221,18 +240,45 @@ fn entry(groups: &[Group], order: &Order, row: u32, column: u32) -> Option<usize
     Some(group.front.start + (column - group.unknowns.start) * (width + group.rows.len()) + below)
 }
 
-/// The entries of the product of `rows` with themselves that have a place in the factor.
-fn runs(groups: &[Group], order: &Order, rows: &[u32]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for (j, column) in rows.iter().enumerate() {
-        for (i, row) in rows.iter().enumerate().skip(j) {
-            let Some(to) = entry(groups, order, *row, *column).map(|to| to as u32) else { continue };
-            let from = (i + j * rows.len()) as u32;
+/// What the elimination of a group with these rows does to later fronts.
+fn changes(groups: &[Group], order: &Order, rows: &[u32]) -> Vec<Change> {
+    let group_of = |row: &u32| order.group_of_unknown[*row as usize];
+    let mut first = 0;
+    let change = |columns: &[u32]| {
+        let group = &groups[group_of(&columns[0]) as usize];
+        let at = first;
+        first += columns.len();
+        let place = |row: u32| (row as usize).checked_sub(group.unknowns.start);
+        let width = group.unknowns.len();
+        let mut runs: Vec<Run> = Vec::new();
+        let mut others = group.rows.iter().enumerate();
+        let mut other = others.next();
+        for (from, row) in rows.iter().enumerate().skip(at) {
+            while other.is_some_and(|(_, other)| other < row) {
+                other = others.next();
+            }
+            let to = match (place(*row), other) {
+                (Some(own), _) if own < width => own,
+                (_, Some((i, other))) if other == row => width + i,
+                _ => continue,
+            };
+            let (from, to) = (from as u32, to as u32);
             match runs.last_mut() {
-                Some(run) if i > j && run.from + run.len == from && run.to + run.len == to => run.len += 1,
+                Some(run) if run.from + run.len == from && run.to + run.len == to => run.len += 1,
                 _ => runs.push(Run { from, to, len: 1 }),
             }
         }
-    }
-    runs
+        let count = columns.len();
+        let follow = columns[count - 1] - columns[0] == count as u32 - 1;
+        let in_place = follow && count >= LONG && rows.len() - at >= LONG * runs.len();
+        Change {
+            in_place,
+            columns: at as u32..first as u32,
+            first_unknown: group.unknowns.start as u32,
+            front: group.front.start,
+            height: width + group.rows.len(),
+            runs,
+        }
+    };
+    rows.chunk_by(|a, b| group_of(a) == group_of(b)).map(change).collect()
 }
