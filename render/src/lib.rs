@@ -50,4 +50,4 @@ pub use scene::Scene;
 pub use solids::{Solid, Solids};
 pub use viewport::Viewport;
 pub use visible::Visible;
-pub use yarn::{LaidRun, LaidYarn};
+pub use yarn::{LaidRun, LaidYarn, YarnLayout};

@@ -6,8 +6,10 @@ use glam::Vec3;
 
 use crate::Camera;
 
-/// The WGSL of shading, for the shaders of everything that is lit. Comes after `frame.wgsl`.
-pub(crate) const WGSL: &str = include_str!("light.wgsl");
+/// The WGSL of shading, for the shaders of everything that is lit, with shadows or without. Comes after `frame.wgsl`.
+pub(crate) fn wgsl(shadows: bool) -> String {
+    format!("const SHADOWS = {shadows};\n{}", include_str!("light.wgsl"))
+}
 
 // Where the lights are, seen from the camera: x right, y up, z towards the eye.
 const KEY: Vec3 = Vec3::new(-0.55, 0.62, 0.56);

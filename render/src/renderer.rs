@@ -68,7 +68,7 @@ impl Renderer {
             wipe: Wipe::new(device, samples),
             surfaces: SurfacePipelines::new(device, &frame_layout, &lit_frame_layout, samples, shadows),
             lines: LinePipeline::new(device, &frame_layout, samples),
-            yarn: YarnPipelines::new(gpu, &frame_layout, &lit_frame_layout, samples),
+            yarn: YarnPipelines::new(gpu, &frame_layout, &lit_frame_layout, samples, shadows),
             frame_layout,
             lit_frame_layout,
         }

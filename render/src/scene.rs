@@ -1,13 +1,11 @@
 //! A drawing on the GPU. Buffers live as long as the scene and grow; updating one part leaves the others alone, so that
 //! yarn can move every frame while everything else stays.
 
-use stitch_mesh::yarn_curves::YarnCurves;
-
 use crate::damage::Damage;
 use crate::drawing::{Drawing, Faces, Lines};
 use crate::lines::LineMesh;
 use crate::surface::SurfaceMesh;
-use crate::yarn::{LaidYarn, YarnMesh};
+use crate::yarn::{LaidYarn, YarnLayout, YarnMesh};
 use crate::{Bounds, Gpu, RenderError, Solids};
 
 /// What to draw, on the GPU.
@@ -50,7 +48,7 @@ impl Scene {
         self.set_faces(gpu, &drawing.faces)?;
         self.set_lines(gpu, &drawing.lines)?;
         self.set_solids(gpu, &drawing.solids)?;
-        self.set_yarn(gpu, &drawing.yarn)
+        self.set_yarn(gpu, &YarnLayout::of(&drawing.yarn))
     }
 
     /// Replaces the polygons.
@@ -96,8 +94,8 @@ impl Scene {
     }
 
     /// Replaces the yarn.
-    pub fn set_yarn(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
-        if !yarn.curves.is_empty() || self.yarn.radius() > 0.0 {
+    pub fn set_yarn(&mut self, gpu: &Gpu, yarn: &YarnLayout) -> Result<(), RenderError> {
+        if !yarn.is_empty() || self.yarn.radius() > 0.0 {
             self.damage = Damage::all();
         }
         self.yarn.set(gpu, yarn)

@@ -9,7 +9,7 @@ use crate::drawing::Faces;
 use crate::light;
 use crate::pipeline::{COLOR_FORMAT, Pipeline, shader};
 use crate::scene::GrowingBuffer;
-use crate::solids::Solids;
+use crate::solids::{Solids, Triangles};
 use crate::{Gpu, RenderError};
 
 const SHAPE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
@@ -173,10 +173,9 @@ impl SurfaceMesh {
 
     /// Replaces the triangles by those of bodies.
     pub fn set_solids(&mut self, gpu: &Gpu, solids: &Solids) -> Result<(), RenderError> {
-        let vertices = solids.vertices();
+        let Triangles { vertices, indices } = solids.triangles();
         let shape: Vec<_> = vertices.iter().map(|v| [v.position, v.normal]).collect();
         let colors: Vec<_> = vertices.iter().map(|v| Vec3::from(v.color).extend(v.opacity)).collect();
-        let indices = Vec::from_iter(0..shape.len() as u32);
         let limit = gpu.device.limits().max_buffer_size;
         self.count = indices.len() as u32;
         self.shape.write(gpu, bytemuck::cast_slice(&shape), limit)?;
@@ -201,7 +200,7 @@ impl SurfacePipelines {
         samples: u32,
         shadows: bool,
     ) -> Self {
-        let module = shader(device, "surface", &[light::WGSL, include_str!("surface.wgsl")]);
+        let module = shader(device, "surface", &[&light::wgsl(shadows), include_str!("surface.wgsl")]);
         let buffer = |stride: usize, attributes| {
             let step_mode = wgpu::VertexStepMode::Vertex;
             Some(wgpu::VertexBufferLayout { array_stride: stride as u64, step_mode, attributes })

@@ -7,16 +7,17 @@
 
 #[cfg(test)]
 mod catmull_rom;
+mod layout;
 mod level;
 mod transport;
 
 use glam::Vec3;
-use stitch_mesh::dye::Dye;
-use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
 use wgpu::CompareFunction::{Greater, Less};
 
-use self::level::{Batch, Chunk, Level, RUN, SAMPLES, SIDES, SPAN_VERTICES, batches};
-use self::transport::{ControlPoint, END, lay_out};
+pub use self::layout::YarnLayout;
+use self::layout::reach;
+use self::level::{Batch, Chunk, Level, SAMPLES, SIDES, SPAN_VERTICES, batches};
+use self::transport::{ControlPoint, END};
 use crate::pipeline::{COLOR_FORMAT, Pipeline, STORAGE, bind_group, bind_group_layout, shader};
 use crate::scene::GrowingBuffer;
 use crate::{Bounds, Gpu, RenderError, light};
@@ -25,17 +26,6 @@ use crate::{Bounds, Gpu, RenderError, light};
 const PLIES: f32 = 3.0;
 /// Length of one turn of the twist, in yarn diameters.
 const PITCH: f32 = 4.5;
-/// Spans that are culled together: few enough to leave out most of what is not seen, enough to keep draw calls cheap.
-const CHUNK: usize = 32;
-
-/// A stretch of a curve that has one thickness, as `yarn.wgsl` reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-struct Stretch {
-    radius: f32,
-    /// Turn of the frame a span, beside its transport [rad].
-    roll: f32,
-}
 
 /// Yarn that lies in buffers of the device already, put there by whoever moves it.
 #[derive(Clone, Debug)]
@@ -96,37 +86,20 @@ impl YarnMesh {
     }
 
     /// Replaces the yarn.
-    pub fn set(&mut self, gpu: &Gpu, yarn: &YarnCurves) -> Result<(), RenderError> {
-        let mut points = Vec::with_capacity(yarn.curves.iter().map(|curve| curve.points.len() + 4).sum());
-        let mut dyes: Vec<u32> = Vec::with_capacity(points.capacity());
-        let mut stretches = Vec::with_capacity(yarn.curves.len());
-        self.chunks.clear();
+    pub fn set(&mut self, gpu: &Gpu, yarn: &YarnLayout) -> Result<(), RenderError> {
         self.laid = None;
-        for curve in &yarn.curves {
-            let first = points.len() + 1;
-            let roll = lay_out(curve, stretches.len() as u32, &mut points);
-            // One control point lies before the first of the curve, and some after its last.
-            let packed = |dye: &Dye| u32::from_le_bytes([dye.0[0], dye.0[1], dye.0[2], 0]);
-            dyes.resize(first.min(points.len()), 0);
-            dyes.extend(curve.dyes.iter().cycle().take(points.len() - dyes.len()).map(packed));
-            dyes.resize(points.len(), 0);
-            if points.len() > first {
-                self.chunks.extend(chunks(&points[first..points.len() - 2], first, curve.greatest_radius()));
-            }
-            let radii = curve.radii.chunk_by(|a, b| a == b);
-            stretches.extend(radii.map(|equal| Stretch { radius: equal[0], roll }));
-        }
+        self.chunks.clone_from(&yarn.chunks);
         self.bound();
-        self.radius = yarn.curves.iter().map(YarnCurve::greatest_radius).fold(0.0, f32::max);
+        self.radius = yarn.radius;
         let limits = gpu.device.limits();
         // The numbers of vertices must fit, too: five million control points.
         let numbered = (i32::MAX as u32 / SPAN_VERTICES) as u64 * size_of::<ControlPoint>() as u64;
         let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(numbered);
         let written = self
             .points
-            .write(gpu, bytemuck::cast_slice(&points), limit)
-            .and_then(|()| self.dyes.write(gpu, bytemuck::cast_slice(&dyes), limit))
-            .and_then(|()| self.stretches.write(gpu, bytemuck::cast_slice(&stretches), limit));
+            .write(gpu, bytemuck::cast_slice(&yarn.points), limit)
+            .and_then(|()| self.dyes.write(gpu, bytemuck::cast_slice(&yarn.dyes), limit))
+            .and_then(|()| self.stretches.write(gpu, bytemuck::cast_slice(&yarn.stretches), limit));
         if written.is_err() {
             self.chunks.clear();
         }
@@ -178,43 +151,17 @@ impl YarnMesh {
     }
 }
 
-/// Cuts the points of a curve, which start at `first` in the buffer, into runs of spans.
-fn chunks(points: &[ControlPoint], first: usize, radius: f32) -> impl Iterator<Item = Chunk> + '_ {
-    let spans = points.len() - 1;
-    (0..spans).step_by(CHUNK).map(move |start| {
-        let run = &points[start..=(start + CHUNK).min(spans)];
-        let center = run.iter().map(|p| p.position).sum::<Vec3>() / run.len() as f32;
-        let length: f32 = run.windows(2).map(|w| w[0].position.distance(w[1].position)).sum();
-        let count = run.len() - 1;
-        let span = length / count as f32;
-        let far = run.iter().map(|p| p.position.distance(center)).fold(0.0, f32::max);
-        Chunk {
-            first: (first + start) as u32,
-            spans: count as u32,
-            center,
-            reach: reach(far, radius, span),
-            radius,
-            span,
-        }
-    })
-}
-
-/// How far yarn goes from a place that its control points are within `far` of: between them the spline bulges, by less than half
-/// a span in any sane curve [m].
-fn reach(far: f32, radius: f32, span: f32) -> f32 {
-    far + radius + 0.5 * span
-}
-
 /// The pipelines that draw it, and the triangles of all levels.
 #[derive(Debug)]
 pub(crate) struct YarnPipelines {
     frayed: wgpu::RenderPipeline,
     tube: wgpu::RenderPipeline,
     ribbon: wgpu::RenderPipeline,
+    thread: wgpu::RenderPipeline,
     shadow: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
-    /// Where the triangles of a level start in the buffer, and where those of the last end.
+    /// Where the triangles of a level start in the buffer.
     starts: Vec<u32>,
 }
 
@@ -224,13 +171,14 @@ impl YarnPipelines {
         frame: &wgpu::BindGroupLayout,
         lit_frame: &wgpu::BindGroupLayout,
         samples: u32,
+        shadows: bool,
     ) -> Self {
         let device = &gpu.device;
         let layout =
             bind_group_layout(device, "yarn", wgpu::ShaderStages::VERTEX, &[STORAGE, STORAGE, STORAGE]);
-        let constants = constants();
+        let (light, constants) = (light::wgsl(shadows), constants());
         let sources =
-            [light::WGSL, &constants, include_str!("yarn/catmull_rom.wgsl"), include_str!("yarn.wgsl")];
+            [light.as_str(), &constants, include_str!("yarn/catmull_rom.wgsl"), include_str!("yarn.wgsl")];
         let module = shader(device, "yarn", &sources);
         let tube = Pipeline {
             label: "yarn tubes",
@@ -255,6 +203,13 @@ impl YarnPipelines {
             vertices: &[],
             ..tube
         };
+        let thread = Pipeline {
+            label: "yarn threads",
+            vertex: "thread_vertex",
+            fragment: Some("thread_fragment"),
+            vertices: &[],
+            ..ribbon
+        };
         let shadow = Pipeline {
             label: "yarn shadow",
             vertex: "shadow_vertex",
@@ -266,14 +221,14 @@ impl YarnPipelines {
             vertices: &[],
             ..ribbon
         };
-        let [frayed, tube, ribbon, shadow] =
-            [frayed, tube, ribbon, shadow].map(|pipeline| pipeline.build(device));
+        let [frayed, tube, ribbon, thread, shadow] =
+            [frayed, tube, ribbon, thread, shadow].map(|pipeline| pipeline.build(device));
 
         let mut indices = Vec::new();
-        let mut starts = vec![0];
+        let mut starts = Vec::new();
         for level in Level::all() {
-            indices.extend((0..RUN).flat_map(|span| level.triangles(span)));
             starts.push(indices.len() as u32);
+            indices.extend(level.triangles());
         }
         let triangles = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("yarn triangles"),
@@ -282,7 +237,7 @@ impl YarnPipelines {
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(&indices));
-        Self { frayed, tube, ribbon, shadow, layout, triangles, starts }
+        Self { frayed, tube, ribbon, thread, shadow, layout, triangles, starts }
     }
 
     /// Draws what is in the picture; `scale` as in [`batches`].
@@ -294,12 +249,14 @@ impl YarnPipelines {
         scale: impl Fn(Vec3, f32) -> Option<f32>,
     ) {
         let batches = batches(&mesh.chunks, scale);
-        let (ribbons, tubes) = batches.split_at(batches.partition_point(|batch| batch.level.is_ribbon()));
+        let (flat, tubes) = batches.split_at(batches.partition_point(|batch| batch.level.is_flat()));
+        let (threads, ribbons) = flat.split_at(flat.partition_point(|batch| batch.level.is_thread()));
         let (plain, frayed) = tubes.split_at(tubes.partition_point(|batch| !batch.level.is_frayed()));
         // The widest yarn is nearest and hides some of the rest.
         self.draw_batches(gpu, pass, &self.frayed, mesh, frayed);
         self.draw_batches(gpu, pass, &self.tube, mesh, plain);
         self.draw_batches(gpu, pass, &self.ribbon, mesh, ribbons);
+        self.draw_batches(gpu, pass, &self.thread, mesh, threads);
     }
 
     /// Draws into the shadow map; `scale` as in [`batches`].
@@ -331,9 +288,8 @@ impl YarnPipelines {
         pass.set_bind_group(1, &bind_group(&gpu.device, &self.layout, buffers.to_vec()), &[]);
         pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for batch in batches {
-            let level = batch.level.index();
-            let (start, end) = (self.starts[level], self.starts[level + 1]);
-            let count = (end - start) / RUN * (batch.end - batch.first);
+            let start = self.starts[batch.level.index()];
+            let count = batch.level.indices(batch.end - batch.first);
             pass.draw_indexed(start..start + count, (batch.first * SPAN_VERTICES) as i32, 0..1);
         }
     }

@@ -1,4 +1,4 @@
-// Yarn: tubes and ribbons along splines, evaluated here from control points, and wool on them.
+// Yarn: tubes, ribbons and threads along splines, evaluated here from control points, and wool on them.
 //
 // SAMPLES, SIDES, PLIES, PITCH and END are written in front of this file by yarn.rs.
 
@@ -252,11 +252,45 @@ fn frayed_fragment(in: TubeCorner) -> @location(0) vec4f {
     return tube_light(in, round, facing, detail);
 }
 
+// Light from a place across a ribbon, −1…1 from edge to edge, whose cosines of light are those of `edge` and `middle`.
+fn ribbon_light(color: vec3f, across: f32, edge: vec4f, middle: vec4f, visibility: f32) -> vec4f {
+    let facing = sqrt(max(0.0, 1.0 - across * across));
+    let cosines = across * edge + facing * middle;
+    return yarn_light(color, cosines, visibility, cosines.x, facing, 1.0);
+}
+
 @fragment
 fn ribbon_fragment(in: RibbonCorner) -> @location(0) vec4f {
-    let facing = sqrt(max(0.0, 1.0 - in.across * in.across));
-    let cosines = in.across * in.edge + facing * in.middle;
     // The ribbon lies in the middle of the yarn, behind its lit surface: that is off the surface enough for shadows.
     let visibility = key_visibility(in.position, frame.key.xyz);
-    return yarn_light(in.color, cosines, visibility, cosines.x, facing, 1.0);
+    return ribbon_light(in.color, in.across, in.edge, in.middle, visibility);
+}
+
+// A ribbon about as wide as a pixel, which takes in all that is across it.
+struct ThreadCorner {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat) light: vec4f,
+}
+
+// Places across a thread, the light of which is averaged.
+const ACROSS = vec4f(-0.75, -0.25, 0.25, 0.75);
+
+@vertex
+fn thread_vertex(@builtin(vertex_index) vertex: u32) -> ThreadCorner {
+    let s = station(vertex);
+    let side = ribbon_side(s);
+    let edge = light_cosines(side);
+    let middle = light_cosines(cross(side, s.tangent));
+    let visibility = key_visibility(s.center, frame.key.xyz);
+    var light = vec4f(0.0);
+    for (var i = 0; i < 4; i++) {
+        light += ribbon_light(s.color, ACROSS[i], edge, middle, visibility) / 4.0;
+    }
+    let position = s.center + side * ribbon_across(vertex) * s.radius;
+    return ThreadCorner(frame.view_projection * vec4f(position, 1.0), light);
+}
+
+@fragment
+fn thread_fragment(in: ThreadCorner) -> @location(0) vec4f {
+    return in.light;
 }

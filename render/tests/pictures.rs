@@ -13,7 +13,7 @@ use glam::Vec3;
 use image::RgbaImage;
 use render::{
     Camera, Drawing, Faces, Lines, NamedView, Polygon, Quality, RenderError, Renderer, Scene, Segment, Solid,
-    Solids, Viewport, palette, read_back, render_image,
+    Solids, Viewport, YarnLayout, palette, read_back, render_image,
 };
 use stitch_mesh::dye::Dye;
 use stitch_mesh::yarn_curves::{YarnCurve, YarnCurves};
@@ -116,6 +116,25 @@ fn yarn_is_lit_from_the_upper_left_and_round() {
     let [left, middle, right] = [0.44, 0.49, 0.56].map(column);
     assert!(left > right + 15 && middle > right + 10, "{left} {middle} {right}");
     assert!(is_background(at(&picture, 0.3, 0.5)) && is_background(at(&picture, 0.7, 0.5)));
+}
+
+#[test]
+fn yarn_as_wide_as_a_pixel_is_as_light_as_wider_yarn() {
+    // Yarn side by side, with radii of 0.71 and 0.80 pixels of the picture before it is made smaller: threads and ribbons.
+    let mean = |radius: f32| {
+        let yarn = |i: i32| {
+            let points = (-8..=8).map(|k| Vec3::new(0.02 * k as f32, 2.0 * radius * i as f32, 0.0)).collect();
+            YarnCurve::new(points, false, radius, Dye([200, 150, 90]))
+        };
+        let curves = (-40..40).map(yarn).collect();
+        let picture = draw(&Drawing { yarn: YarnCurves { curves }, ..Default::default() }, NamedView::Front);
+        let pixels =
+            (0..40 * 40).map(|i| at(&picture, 0.4 + 0.005 * (i % 40) as f32, 0.4 + 0.005 * (i / 40) as f32));
+        pixels.fold([0; 3], |sum, pixel| [0, 1, 2].map(|c| sum[c] + pixel[c])).map(|sum| sum as f32 / 1600.0)
+    };
+    let [threads, ribbons] = [1.5e-3, 1.7e-3].map(mean);
+    let apart = (0..3).map(|c| (threads[c] - ribbons[c]).abs()).fold(0.0, f32::max);
+    assert!(apart < 4.0, "{threads:?} {ribbons:?}");
 }
 
 #[test]
@@ -265,7 +284,7 @@ fn frame_times() {
         camera.zoom(zoom);
         let mut frame = || {
             let start = std::time::Instant::now();
-            scene.set_yarn(gpu(), &yarn).unwrap();
+            scene.set_yarn(gpu(), &YarnLayout::of(&yarn)).unwrap();
             let update = start.elapsed();
             let mut encoder = gpu().device.create_command_encoder(&Default::default());
             renderer.draw(gpu(), &mut encoder, &viewport, &camera, &scene);

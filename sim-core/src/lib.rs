@@ -97,7 +97,7 @@ pub use simulator::{SimError, Simulator, StepReport};
 pub use solver::{Method, SolveError};
 pub use step::Rejection;
 pub use surgery::{Operated, Operation, Surgery, SurgeryError, operate};
-pub use thread::{SimCommand, SimThread, Snapshot};
+pub use thread::{See, SimCommand, SimThread, Snapshot};
 
 #[cfg(test)]
 mod testing;

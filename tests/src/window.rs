@@ -52,7 +52,7 @@ impl Window {
     pub fn new(project: Project) -> Self {
         let painter = create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
         let gpu = Gpu::new(&painter.adapter, &painter.device, &painter.queue).unwrap();
-        let screen = Screen::new(gpu.clone(), painter.renderer.clone()).unwrap();
+        let screen = Screen::new(gpu.clone(), painter.target_format).unwrap();
         let editor = Editor::new(project, None, Some(screen), || ()).unwrap();
         let harness = Harness::builder()
             .with_size([1360.0, 860.0])

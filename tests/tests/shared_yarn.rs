@@ -4,7 +4,7 @@
 
 use app::window::screen::laid;
 use image::RgbaImage;
-use render::{Camera, Drawing, Quality, Renderer, Scene, Viewport, read_back};
+use render::{Camera, Drawing, Quality, Renderer, Scene, Viewport, YarnLayout, read_back};
 use sim_core::{
     GpuDevice, Material, Materials, SharedGpu, SimCommand, SimThread, Snapshot, SolverChoice, curves,
 };
@@ -46,17 +46,18 @@ fn difference(a: &RgbaImage, b: &RgbaImage, background: &RgbaImage) -> f64 {
 /// A few steps of a net in a simulation thread on the device of the renderer.
 fn simulated(net: YarnNet) -> (Arc<Snapshot>, Materials) {
     let shared = GpuDevice::of(gpu().adapter_info.clone(), &gpu().device, &gpu().queue).unwrap();
-    let (woken, wakes) = channel();
-    let wake = Box::new(move || woken.send(()).unwrap_or_default());
-    let thread = SimThread::spawn(SharedGpu::from(shared), wake).unwrap();
+    let (seen, snapshots) = channel();
+    let see =
+        Box::new(move |snapshot: Option<&Arc<Snapshot>>| seen.send(snapshot.cloned()).unwrap_or_default());
+    let thread = SimThread::spawn(SharedGpu::from(shared), see).unwrap();
     let materials = Materials::from(Material::for_loop_width(3e-3));
     let scene = sim_core::Scene::empty();
     thread.send(SimCommand::SetSolver(SolverChoice::Gpu));
     thread.send(SimCommand::Load { net: Arc::new(net), materials: materials.clone(), scene, state: None });
     (0..4).for_each(|_| _ = thread.send(SimCommand::StepOnce));
     loop {
-        wakes.recv_timeout(Duration::from_secs(60)).unwrap();
-        if let Some(snapshot) = thread.latest().filter(|s| s.time_s > 0.0) {
+        let seen = snapshots.recv_timeout(Duration::from_secs(60)).unwrap();
+        if let Some(snapshot) = seen.filter(|s| s.time_s > 0.0) {
             assert_eq!((snapshot.solver, &snapshot.notice, &snapshot.error), ("gpu", &None, &None));
             return (snapshot, materials);
         }
@@ -82,7 +83,7 @@ fn yarn_is_drawn_where_it_is_simulated() {
         let mut shared = Scene::new();
         shared.share_yarn(laid(snapshot.on_device.as_ref().unwrap()));
         let mut elsewhere = Scene::new();
-        elsewhere.set_yarn(gpu(), &moved).unwrap();
+        elsewhere.set_yarn(gpu(), &YarnLayout::of(&moved)).unwrap();
         for (distance, away, most) in DISTANCES {
             let camera = Camera { distance: away * fitted.distance, ..fitted };
             let shown =

@@ -10,6 +10,7 @@ use super::screen::Screen;
 use super::search::Search;
 use super::selection::{Mode, Selection};
 use super::session::{Preview, Request, Session};
+use super::strung::{Newest, Strung};
 use super::view::{Survey, View};
 use super::{actions, panels};
 use crate::command::Command;
@@ -20,7 +21,7 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use render::palette::StitchColors;
 use render::{Bounds, Camera, Faces, Lines, NamedView};
-use sim_core::{Materials, Pin, Scene, SharedGpu, SimCommand, SimThread, Snapshot, SolverChoice};
+use sim_core::{Materials, Pin, Scene, See, SharedGpu, SimCommand, SimThread, Snapshot, SolverChoice};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -72,8 +73,10 @@ pub struct Editor {
     pub(super) marked: Option<Option<HalfEdgeId>>,
     /// The marks on the screen.
     pub(super) marks: Lines,
-    pub(super) snapshot: Option<Arc<Snapshot>>,
-    /// Whether the snapshot is not on the screen yet.
+    newest: Newest,
+    /// The snapshot that is shown, or is about to be.
+    pub(super) strung: Option<Arc<Strung>>,
+    /// Whether it is not on the screen yet.
     is_new: bool,
     shown: Option<(u64, Stage)>,
     /// Whether the faces on the screen have other colours now.
@@ -104,9 +107,18 @@ impl Editor {
         };
         let session = Session::spawn(project, path, Arc::new(wake.clone()))?;
         let (view, survey) = (session.latest(), session.survey());
+        let newest = Newest::default();
+        let slot = newest.clone();
+        let see: See = Box::new({
+            let wake = wake.clone();
+            move |snapshot| {
+                slot.put(snapshot);
+                wake();
+            }
+        });
         let gpu = screen.as_ref().map_or_else(SharedGpu::default, Screen::shared_gpu);
         Ok(Self {
-            sim: SimThread::spawn(gpu, Box::new(wake))?,
+            sim: SimThread::spawn(gpu, see)?,
             solver: SolverChoice::default(),
             panel: panels::State::of(&view),
             session,
@@ -133,7 +145,8 @@ impl Editor {
             under: None,
             marked: None,
             marks: Lines::default(),
-            snapshot: None,
+            newest,
+            strung: None,
             is_new: false,
             shown: None,
             recolour: false,
@@ -173,7 +186,7 @@ impl Editor {
 
     /// The newest snapshot of the simulation of this project's yarn.
     pub fn yarn(&self) -> Option<&Snapshot> {
-        self.snapshot.as_deref()
+        self.strung.as_ref().map(|s| &*s.snapshot)
     }
 
     /// Steps of the relaxation that is on the screen just now.
@@ -190,7 +203,7 @@ impl Editor {
 
     /// Sends a request, with the yarn as it is just now.
     pub(super) fn request(&mut self, request: Request) {
-        let moved = self.snapshot.as_ref().filter(|s| s.moved);
+        let moved = self.yarn().filter(|s| s.moved);
         let yarn = moved.zip(self.loaded.as_ref()).map(|(s, from)| Moved {
             from: Arc::clone(from),
             net: Arc::clone(&s.net),
@@ -247,7 +260,7 @@ impl Editor {
     pub(super) fn yarn_now(&self, fabric: &Fabric) -> Option<(Arc<YarnNet>, Arc<YarnState>)> {
         let laid = fabric.net_if_laid()?;
         let is_of = |net: &Arc<YarnNet>| Arc::ptr_eq(net, laid);
-        match &self.snapshot {
+        match self.yarn() {
             Some(s) if self.loaded.as_ref().is_some_and(is_of) && s.state.fits(&s.net) => {
                 Some((Arc::clone(&s.net), Arc::new(s.state.clone())))
             }
@@ -275,14 +288,14 @@ impl Editor {
             self.survey = survey;
             self.recolour |= self.strained;
         }
-        let snapshot = self.sim.latest().filter(|s| s.generation == self.generation);
-        let is_new = match (&snapshot, &self.snapshot) {
+        let strung = self.newest.get().filter(|s| s.snapshot.generation == self.generation);
+        let is_new = match (&strung, &self.strung) {
             (Some(new), Some(old)) => !Arc::ptr_eq(new, old),
             (new, _) => new.is_some(),
         };
         if is_new {
-            self.playing = self.playing && snapshot.as_ref().is_none_or(|s| s.error.is_none());
-            self.snapshot = snapshot;
+            self.playing = self.playing && strung.as_ref().is_none_or(|s| s.snapshot.error.is_none());
+            self.strung = strung;
             self.is_new = true;
         }
     }
@@ -315,7 +328,7 @@ impl Editor {
         let Some(fabric) = &project.fabric else {
             if self.loaded.take().is_some() {
                 self.sim.send(SimCommand::Stop);
-                self.snapshot = None;
+                self.strung = None;
             }
             return;
         };

@@ -10,6 +10,7 @@ mod meant;
 mod navigation;
 mod numbers;
 mod panels;
+mod paste;
 mod picture;
 mod pointer;
 mod runs;
@@ -18,6 +19,7 @@ pub mod screen;
 mod search;
 pub mod selection;
 pub mod session;
+mod strung;
 mod surface;
 pub mod view;
 mod viewport;
@@ -28,7 +30,7 @@ use anyhow::{Context, Result};
 use editor::Editor;
 use egui_wgpu::wgpu;
 use render::Gpu;
-use screen::{Screen, SharedPainter};
+use screen::Screen;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -75,7 +77,7 @@ struct Shown {
     config: wgpu::SurfaceConfiguration,
     device: wgpu::Device,
     queue: wgpu::Queue,
-    painter: SharedPainter,
+    painter: egui_wgpu::Renderer,
     input: egui_winit::State,
     editor: Editor,
 }
@@ -174,8 +176,9 @@ impl Shown {
         config.format = config.format.remove_srgb_suffix();
         surface.configure(&device, &config);
         let painter = egui_wgpu::Renderer::new(&device, config.format, egui_wgpu::RendererOptions::default());
-        let painter: SharedPainter = Arc::new(egui::mutex::RwLock::new(painter));
         let context = egui::Context::default();
+        // A frame begins with the colour of the panels, which is cheaper than to paint them.
+        context.all_styles_mut(|style| style.visuals.panel_fill = egui::Color32::TRANSPARENT);
         let input = egui_winit::State::new(
             context,
             egui::ViewportId::ROOT,
@@ -184,7 +187,7 @@ impl Shown {
             window.theme(),
             Some(device.limits().max_texture_dimension_2d as usize),
         );
-        let screen = Screen::new(Gpu::new(&adapter, &device, &queue)?, painter.clone())?;
+        let screen = Screen::new(Gpu::new(&adapter, &device, &queue)?, config.format)?;
         let wake = move || {
             // The loop is gone only when the program ends.
             let _ = proxy.send_event(Wake);
@@ -213,7 +216,7 @@ impl Shown {
             size_in_pixels: [self.config.width, self.config.height],
             pixels_per_point: output.pixels_per_point,
         };
-        let mut painter = self.painter.write();
+        let painter = &mut self.painter;
         for (id, deltas) in std::mem::take(&mut output.textures_delta.set) {
             for delta in deltas {
                 painter.update_texture(&self.device, &self.queue, id, &delta);
@@ -232,6 +235,9 @@ impl Shown {
         };
         if let Some(frame) = frame {
             let view = frame.texture.create_view(&Default::default());
+            let [r, g, b, a] =
+                context.global_style().visuals.window_fill.to_array().map(|value| f64::from(value) / 255.0);
+            let ground = wgpu::Color { r, g, b, a };
             let mut encoder = self.device.create_command_encoder(&Default::default());
             let uploads = painter.update_buffers(&self.device, &self.queue, &mut encoder, &jobs, &screen);
             {
@@ -243,7 +249,7 @@ impl Shown {
                             resolve_target: None,
                             depth_slice: None,
                             ops: wgpu::Operations {
-                                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                                load: wgpu::LoadOp::Clear(ground),
                                 store: wgpu::StoreOp::Store,
                             },
                         })],

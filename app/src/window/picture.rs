@@ -2,10 +2,11 @@
 
 use super::editor::Editor;
 use super::selection::Mode;
+use super::strung::Strung;
 use crate::drawing::{Stage, drawing_where, stitch_colors, stitch_drawing};
 use crate::solids::solids;
 use glam::Vec3;
-use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, palette};
+use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, YarnLayout, palette};
 use sim_core::{DeviceYarn, Snapshot, curves};
 use smallvec::SmallVec;
 use std::borrow::Cow;
@@ -23,7 +24,7 @@ const LIFT: f64 = 2.6;
 
 /// Yarn as it is shown.
 enum ShownYarn<'a> {
-    Curves(Cow<'a, YarnCurves>),
+    LaidOut(Cow<'a, YarnLayout>),
     /// It is on the device already.
     OnDevice(&'a DeviceYarn),
 }
@@ -53,14 +54,8 @@ impl Editor {
 
     fn show_polygons(&mut self, stage: Stage) {
         let drawing = match stage {
-            Stage::Yarn => {
-                // Curves come with the snapshots, made in the simulation's thread.
-                let yarn = match self.snapshot.as_ref().map(|s| self.yarn_of(s)) {
-                    Some(ShownYarn::Curves(yarn)) => yarn.into_owned(),
-                    _ => YarnCurves::default(),
-                };
-                Drawing { yarn, solids: self.solids_now(), ..Drawing::default() }
-            }
+            // The yarn comes with the snapshots, laid out in the simulation's thread.
+            Stage::Yarn => Drawing { solids: self.solids_now(), ..Drawing::default() },
             stage => {
                 let hidden = &self.selection().hidden;
                 let (project, colors) = (&self.view.project, self.stitch_colors);
@@ -73,17 +68,11 @@ impl Editor {
                 }
             }
         };
-        let snapshot = self.snapshot.clone().filter(|_| stage == Stage::Yarn);
-        let on_device = snapshot.as_ref().and_then(|s| match self.yarn_of(s) {
-            ShownYarn::OnDevice(yarn) => Some(yarn),
-            ShownYarn::Curves(_) => None,
-        });
-        let shown = self.screen.as_mut().map(|screen| {
-            screen.set(&drawing)?;
-            on_device.into_iter().for_each(|yarn| screen.share_yarn(yarn));
-            Ok(())
-        });
+        let shown = self.screen.as_mut().map(|screen| screen.set(&drawing));
         self.report(shown);
+        if stage == Stage::Yarn {
+            self.show_curves();
+        }
         self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
     }
 
@@ -120,15 +109,7 @@ impl Editor {
 
     /// Puts yarn that has moved on the screen.
     pub(super) fn show_yarn(&mut self) {
-        let Some(snapshot) = self.snapshot.clone() else { return };
-        let shown = match self.yarn_of(&snapshot) {
-            ShownYarn::Curves(yarn) => self.screen.as_mut().map(|screen| screen.set_yarn(&yarn)),
-            ShownYarn::OnDevice(yarn) => self.screen.as_mut().map(|screen| {
-                screen.share_yarn(yarn);
-                Ok(())
-            }),
-        };
-        self.report(shown);
+        self.show_curves();
         if self.view.project.scene.bodies.iter().any(|b| b.motion().is_some()) {
             let solids = self.solids_now();
             let shown = self.screen.as_mut().map(|screen| screen.set_solids(&solids));
@@ -138,11 +119,27 @@ impl Editor {
         self.marked = None;
     }
 
+    /// Puts the yarn on the screen, whatever else is on it.
+    fn show_curves(&mut self) {
+        let Some(strung) = self.strung.clone() else { return };
+        let shown = match self.yarn_of(&strung) {
+            ShownYarn::LaidOut(yarn) => self.screen.as_mut().map(|screen| screen.set_yarn(&yarn)),
+            ShownYarn::OnDevice(yarn) => self.screen.as_mut().map(|screen| {
+                screen.share_yarn(yarn);
+                Ok(())
+            }),
+        };
+        self.report(shown);
+    }
+
     /// The yarn of a snapshot as it is shown.
-    fn yarn_of<'a>(&self, snapshot: &'a Snapshot) -> ShownYarn<'a> {
-        match &snapshot.on_device {
-            Some(yarn) if self.selection().hidden.is_empty() => ShownYarn::OnDevice(yarn),
-            _ => ShownYarn::Curves(self.shown_yarn(snapshot)),
+    fn yarn_of<'a>(&self, strung: &'a Strung) -> ShownYarn<'a> {
+        match &strung.snapshot.on_device {
+            _ if !self.selection().hidden.is_empty() => {
+                ShownYarn::LaidOut(Cow::Owned(YarnLayout::of(&self.shown_yarn(&strung.snapshot))))
+            }
+            Some(yarn) => ShownYarn::OnDevice(yarn),
+            None => ShownYarn::LaidOut(Cow::Borrowed(&strung.yarn)),
         }
     }
 
@@ -168,7 +165,7 @@ impl Editor {
 
     /// The bodies where they are in the simulation.
     fn solids_now(&self) -> Solids {
-        let time_s = self.snapshot.as_ref().map_or(0.0, |s| s.scene_time_s);
+        let time_s = self.yarn().map_or(0.0, |s| s.scene_time_s);
         solids(&self.view.project.scene, time_s)
     }
 

@@ -1,41 +1,37 @@
-//! The picture in the middle of the window: drawn by the renderer on egui's own device, shown by egui as a texture.
+//! The picture in the middle of the window: drawn by the renderer on egui's own device, and pasted into egui's pass.
 
+use super::paste::{Paste, Pasted};
 use anyhow::Result;
-use egui_wgpu::Renderer as Painter;
-use egui_wgpu::wgpu::FilterMode;
+use egui_wgpu::wgpu::TextureFormat;
 use render::{
     Camera, Drawing, Faces, Gpu, LaidRun, LaidYarn, Lines, Quality, Renderer, Scene, Solids, Viewport,
+    YarnLayout,
 };
 use sim_core::{DeviceYarn, SharedGpu, YarnRun};
-use std::sync::Arc;
-use stitch_mesh::yarn_curves::YarnCurves;
-
-/// egui's painter, which holds the textures that egui can show.
-pub type SharedPainter = Arc<egui::mutex::RwLock<Painter>>;
 
 /// Renderer, viewport and what is in it.
 pub struct Screen {
     gpu: Gpu,
-    painter: SharedPainter,
+    paste: Paste,
     renderer: Renderer,
     viewport: Viewport,
     scene: Scene,
-    texture: egui::TextureId,
-    /// What the picture in the texture was drawn for.
+    pasted: Pasted,
+    /// What the picture was drawn for.
     drawn: Option<([u32; 2], Camera)>,
 }
 
 impl Screen {
-    /// A screen on the device that egui paints with.
+    /// A screen on the device that egui paints with, into targets of a format.
     ///
     /// # Errors
     /// The device cannot hold a viewport.
-    pub fn new(gpu: Gpu, painter: SharedPainter) -> Result<Self> {
+    pub fn new(gpu: Gpu, target: TextureFormat) -> Result<Self> {
         let renderer = Renderer::new(&gpu, Quality::Interactive);
         let viewport = Viewport::new(&gpu, &renderer, [64, 64])?;
-        let texture =
-            painter.write().register_native_texture(&gpu.device, viewport.view(), FilterMode::Linear);
-        Ok(Self { gpu, painter, renderer, viewport, scene: Scene::new(), texture, drawn: None })
+        let paste = Paste::new(&gpu, target);
+        let pasted = paste.of(&gpu, viewport.view());
+        Ok(Self { gpu, paste, renderer, viewport, scene: Scene::new(), pasted, drawn: None })
     }
 
     /// The device of the screen, to simulate on.
@@ -76,7 +72,7 @@ impl Screen {
     ///
     /// # Errors
     /// As [`Self::set`].
-    pub fn set_yarn(&mut self, yarn: &YarnCurves) -> Result<()> {
+    pub fn set_yarn(&mut self, yarn: &YarnLayout) -> Result<()> {
         Ok(self.scene.set_yarn(&self.gpu, yarn)?)
     }
 
@@ -98,16 +94,11 @@ impl Screen {
     ///
     /// # Errors
     /// No such size.
-    pub fn draw(&mut self, size: [u32; 2], camera: &Camera, moving: bool) -> Result<egui::TextureId> {
+    pub fn draw(&mut self, size: [u32; 2], camera: &Camera, moving: bool) -> Result<Pasted> {
         let shrink = if moving && self.gpu.is_software() { 2 } else { 1 };
         let size = size.map(|pixels| (pixels / shrink).max(1));
         if self.viewport.resize(&self.gpu, &self.renderer, size)? {
-            self.painter.write().update_egui_texture_from_wgpu_texture(
-                &self.gpu.device,
-                self.viewport.view(),
-                FilterMode::Linear,
-                self.texture,
-            );
+            self.pasted = self.paste.of(&self.gpu, self.viewport.view());
         }
         let wanted = Some((size, *camera));
         if self.drawn != wanted || !self.scene.is_settled() {
@@ -121,7 +112,7 @@ impl Screen {
             self.scene.settle();
             self.drawn = wanted;
         }
-        Ok(self.texture)
+        Ok(self.pasted.clone())
     }
 }
 

@@ -25,11 +25,7 @@ pub fn show(editor: &mut Editor, ui: &mut egui::Ui) {
             editor.playing || response.dragged() || ui.ctx().input(|i| i.smooth_scroll_delta.y != 0.0);
         let Some(screen) = &mut editor.screen else { return };
         match screen.draw(pixels, &editor.camera, moving) {
-            Ok(texture) => {
-                let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-                let shape = egui::Shape::image(texture, rect, whole, egui::Color32::WHITE);
-                ui.painter().set(picture, shape);
-            }
+            Ok(pasted) => ui.painter().set(picture, egui_wgpu::Callback::new_paint_callback(rect, pasted)),
             Err(error) => editor.error = Some(format!("{error:#}")),
         }
         // A last frame in full once everything is at rest.

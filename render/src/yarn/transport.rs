@@ -19,7 +19,7 @@ pub(crate) const END: u32 = 1 << 31;
 
 /// A control point as `yarn.wgsl` reads it.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct ControlPoint {
     pub position: Vec3,
     /// Length of yarn up to here, in yarn diameters.

@@ -1,6 +1,6 @@
 //! What a simulation thread does.
 
-use super::{SimCommand, Snapshot};
+use super::{See, SimCommand, Snapshot};
 use crate::choice::{SharedGpu, SolverChoice};
 use crate::curves::curves;
 use crate::materials::Materials;
@@ -9,8 +9,8 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::simulator::SimError;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use stitch_mesh::yarn_curves::YarnCurves;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
@@ -37,8 +37,7 @@ struct Run {
 }
 
 pub(super) struct Worker {
-    latest: Arc<Mutex<Option<Arc<Snapshot>>>>,
-    wake: Box<dyn Fn() + Send>,
+    see: See,
     gpu: SharedGpu,
     choice: SolverChoice,
     run: Option<Run>,
@@ -46,13 +45,9 @@ pub(super) struct Worker {
 }
 
 impl Worker {
-    /// One that simulates on `gpu` where that is the best, and leaves its snapshots in `latest`.
-    pub fn new(
-        gpu: SharedGpu,
-        latest: Arc<Mutex<Option<Arc<Snapshot>>>>,
-        wake: Box<dyn Fn() + Send>,
-    ) -> Self {
-        Self { latest, wake, gpu, choice: SolverChoice::default(), run: None, loads: 0 }
+    /// One that simulates on `gpu` where that is the best, and lets `see` have its snapshots.
+    pub fn new(gpu: SharedGpu, see: See) -> Self {
+        Self { see, gpu, choice: SolverChoice::default(), run: None, loads: 0 }
     }
 
     /// Carries out what comes until nobody can send any more.
@@ -127,8 +122,7 @@ impl Worker {
 
     fn publish(&mut self) {
         let snapshot = self.run.as_mut().map(|run| Arc::new(run.snapshot(self.loads)));
-        *self.latest.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
-        (self.wake)();
+        (self.see)(snapshot.as_ref());
     }
 }
 

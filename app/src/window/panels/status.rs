@@ -35,14 +35,14 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                     editor.session.cancel();
                 }
             }
-            let sim_error = editor.snapshot.as_ref().and_then(|s| s.error.clone());
+            let sim_error = editor.yarn().and_then(|s| s.error.clone());
             if let Some(error) = editor.error.as_ref().or(sim_error.as_ref()) {
                 ui.colored_label(ui.visuals().error_fg_color, error);
             } else if let Ok(message) = &editor.view.message {
                 ui.label(message);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if let Some(s) = &editor.snapshot {
+                if let Some(s) = editor.yarn() {
                     ui.label(format!("{:.2} s simulated, {:.0} ms a step", s.time_s, s.ms_per_step));
                 }
             });
