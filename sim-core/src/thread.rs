@@ -2,8 +2,8 @@
 //!
 //! Commands go in through a channel; after every step its user sees the newest snapshot, still in this thread, so that what
 //! takes a while to make of it is made here. Nobody waits: between two steps the thread looks at everything that was sent meanwhile.
-//! The threads of the simulation give way to all others: on two processors that draw the window too, its pictures take 97 ms
-//! instead of 173 while a garment of 9 500 loops moves.
+//! The threads of the simulation give way to all others: on two processors that draw the window too, its pictures took 97 ms
+//! instead of 173 while a garment of 9 500 loops moved.
 //! Time goes no faster than on the clock, so that a small swatch falls as one would see it fall (`pace.rs`).
 
 #[cfg(test)]
