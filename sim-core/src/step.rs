@@ -7,8 +7,7 @@
 //! # Practice
 //! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
 //! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
-//! yarn, its ends move against each other by more than four fifths of its length or of the yarn's diameter (sewing yarn between crossings
-//! that are closer than it is thick turns at will). Where that is a few segments, they are held and
+//! yarn, its ends move against each other by more than four fifths of its length. Where that is a few segments, they are held and
 //! the step is solved again first (`brace.rs`).
 
 use crate::assembly::{Start, System};
@@ -32,7 +31,7 @@ use smallvec::SmallVec;
 use stitch_mesh::ids::VisitId;
 use stitch_mesh::yarn_net::{Node, YarnState};
 
-/// How far the ends of a segment may move against each other in a step, over its length or the diameter of the yarn.
+/// How far the ends of a segment may move against each other in a step, over its length.
 pub(crate) const LEAP: f64 = 0.8;
 
 /// Why a step was thrown away.
@@ -47,7 +46,7 @@ pub enum Rejection {
     /// A segment would lose more than half of its yarn.
     #[error("segment {0} loses more than half of its yarn")]
     Shrinking(usize),
-    /// The ends of a segment would move against each other by more than four fifths of its length or of the diameter of its yarn.
+    /// The ends of a segment would move against each other by more than four fifths of its length.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
     /// More layers of the fabric meet than the GPU has room for.
@@ -313,8 +312,7 @@ impl Stepper {
             let [ua, ub] = term.stencil.visits.map(|v| v.index());
             let yarn = |s: &YarnState| s.sliding[ub] + term.stencil.turn[1] - s.sliding[ua];
             let span = |s: &YarnState| s.position[b] - s.position[a];
-            let diameter = 2.0 * self.materials[term.dye as usize].drawn_radius;
-            let length = span(state).length().max(yarn(state)).max(diameter);
+            let length = span(state).length().max(yarn(state));
             let excess = if yarn(next) < 0.5 * yarn(state) {
                 Excess::Shrinking
             } else if span(next).distance(span(state)) > LEAP * length {

@@ -8,7 +8,6 @@
 @group(0) @binding(6) var<storage, read> next_visits: array<vec4<f32>>;
 // The first segment that is wrong, and what is wrong with it in its lower two bits; NONE if all are right.
 @group(0) @binding(7) var<storage, read_write> worst: atomic<u32>;
-@group(0) @binding(8) var<storage, read> materials: array<Material>;
 
 @compute @workgroup_size(WIDE)
 fn judge(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -27,7 +26,7 @@ fn judge(@builtin(global_invocation_id) id: vec3<u32>) {
         wrong = REJECTED_NOT_FINITE;
     } else if next_yarn < 0.5 * yarn {
         wrong = REJECTED_SHRINKING;
-    } else if change > LEAP * max(max(length(r), yarn), materials[term.dye].diameter) {
+    } else if change > LEAP * max(length(r), yarn) {
         wrong = REJECTED_LEAPING;
     }
     if wrong != 0u {
