@@ -7,21 +7,16 @@ use std::time::{Duration, Instant};
 pub struct Costs {
     /// Time on the clock in each stage.
     pub stages: [Duration; STAGES.len()],
-    /// Steps tried.
+    /// Steps tried: those that went well, those solved before with fewer segments held, those taken again in smaller ones.
     pub attempts: u64,
     /// Iterations of conjugate gradients in all.
     pub iterations: u64,
+    /// Memory read by these and at their beginnings on the CPU: factors forwards and backwards, and matrices once [bytes].
+    pub bytes: u64,
+    /// Operations of the factorisations on the CPU, a multiplication and an addition being two.
+    pub operations: u64,
     /// Error of the last solution in the norm of the energy, relative to the solution itself, as the iterations estimate it.
     pub residual: f64,
-}
-
-/// What the solver of a simulator has to do, whatever the time it takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Memory read for one iteration: the factor forwards and backwards, and the matrix once [bytes].
-    pub iteration_bytes: u64,
-    /// Operations for one factorisation, a multiplication and an addition being two.
-    pub factorisation_operations: u64,
 }
 
 /// The names of the stages of [`Costs::stages`], one after the other.

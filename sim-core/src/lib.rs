@@ -76,7 +76,7 @@ pub use choice::{SharedGpu, SolverChoice};
 pub use clearance::least_distance;
 pub use closed_mesh::ClosedMesh;
 pub use closed_surface::{ClosedMeshError, Triangles};
-pub use costs::{Costs, STAGES, Work};
+pub use costs::{Costs, STAGES};
 pub use curves::curves;
 pub use energies::Energies;
 pub use facts::Facts;

@@ -8,7 +8,7 @@
 //! that was read back, at most 0.05 s of simulated time before, and [`Simulation::notice`] says so.
 
 use crate::choice::{SharedGpu, SolverChoice};
-use crate::costs::{Costs, Work};
+use crate::costs::Costs;
 use crate::curves::curves;
 use crate::facts::Facts;
 use crate::forces::HoldFact;
@@ -285,14 +285,6 @@ impl Simulation {
         match &self.on {
             On::Cpu(cpu) => cpu.costs(),
             On::Gpu(gpu) => gpu.costs(),
-        }
-    }
-
-    /// What the solver on the CPU has to do.
-    pub fn work(&self) -> Option<Work> {
-        match &self.on {
-            On::Cpu(cpu) => Some(cpu.work()),
-            On::Gpu(_) => None,
         }
     }
 

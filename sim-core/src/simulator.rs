@@ -1,6 +1,6 @@
 //! The simulator: a net, its state, and time going by.
 
-use crate::costs::{Costs, Work};
+use crate::costs::Costs;
 use crate::energies::Energies;
 use crate::facts::{self, Facts};
 use crate::friction::Anchors;
@@ -291,11 +291,6 @@ impl Simulator {
     /// How the systems of its steps are solved.
     pub fn method(&self) -> Method {
         self.stepper.solver.method()
-    }
-
-    /// What its solver has to do.
-    pub fn work(&self) -> Work {
-        self.stepper.solver.work(&self.stepper.system.matrix)
     }
 
     /// What its steps have cost since it began or yarn was last cut.

@@ -64,15 +64,19 @@ impl Factor {
         }
     }
 
-    /// Its size, packed [bytes], and the operations that making it takes.
-    pub fn work(&self) -> (u64, u64) {
+    /// Its size, packed [bytes].
+    pub fn bytes(&self) -> u64 {
+        size_of_val(&self.tiles[..]) as u64
+    }
+
+    /// Operations that making it takes.
+    pub fn operations(&self) -> u64 {
         let of = |group: &Group| {
             let (n, m) = (group.unknowns.len() as u64, group.rows.len() as u64);
             // (C; Q) and U of a front, and half of Q Qᵀ; a multiplication and an addition each.
             2 * (n * n * n / 3 + n * n * m + n * n * n / 6 + n * m * m / 2)
         };
-        let operations = self.pattern.groups.iter().map(of).sum();
-        (size_of_val(&self.tiles[..]) as u64, operations)
+        self.pattern.groups.iter().map(of).sum()
     }
 
     /// Factorises `matrix`.

@@ -20,7 +20,9 @@ pub(crate) trait Preconditioner {
 
 /// The iterations did not reach the tolerance, or the matrix is not positive definite.
 #[derive(Debug)]
-pub(crate) struct NotConverged;
+pub(crate) struct NotConverged {
+    pub iterations: usize,
+}
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +55,7 @@ pub(crate) fn solve(
         product.set(matrix, &p, &mut q);
         let curvature = dot(&p, &q);
         if iterations == most || !(curvature > 0.0 && error.is_finite()) {
-            return Err(NotConverged);
+            return Err(NotConverged { iterations });
         }
         let step = error / curvature;
         for i in 0..x.len() {

@@ -50,10 +50,10 @@ pub(crate) mod product;
 mod separator;
 pub(crate) mod tail;
 
-use crate::costs::{Costs, Stage, Watch, Work};
+use crate::costs::{Costs, Stage, Watch};
 use crate::model::Model;
 use factor::Factor;
-use gradients::Solved;
+use gradients::{NotConverged, Solved};
 use matrix::BlockMatrix;
 use pattern::Pattern;
 
@@ -96,9 +96,6 @@ const OPERATION_BY_BYTE: f64 = 0.1;
 
 /// Iterations that a complete factorisation leaves to be done, for the tail, counted as those with an incomplete one: 6 of twice the time.
 const ITERATIONS_OF_TAIL: usize = 12;
-
-/// Iterations that are over twice what a complete factorisation would have taken.
-const TWICE: usize = 2;
 
 /// Iterations after which to give up with a complete factorisation, which leaves rounding and the tail to them.
 const MOST_ITERATIONS_OF_TAIL: usize = 400;
@@ -153,18 +150,6 @@ impl Solver {
         Self { incomplete: Some(incomplete), complete: None, adapts: false, direct_for: 0 }
     }
 
-    /// What it has to do.
-    pub fn work(&self, matrix: &BlockMatrix) -> Work {
-        let (first, second) = match self.method() {
-            Method::Iterative => (&self.incomplete, &self.complete),
-            Method::Direct => (&self.complete, &self.incomplete),
-        };
-        let factor = first.as_ref().or(second.as_ref());
-        let (bytes, factorisation_operations) = factor.map_or((0, 0), Factor::work);
-        let matrix_bytes = size_of_val(&matrix.value[..]) as u64;
-        Work { iteration_bytes: 2 * bytes + matrix_bytes, factorisation_operations }
-    }
-
     /// Replaces the guess in `x` by the solution of `matrix` x = `rhs`.
     pub fn solve(
         &mut self,
@@ -182,7 +167,8 @@ impl Solver {
             let as_fast = iterations_as_fast(model, matrix, incomplete);
             let most = match (alone, self.adapts) {
                 (true, _) => MOST_ITERATIONS_ALONE,
-                (false, true) => TWICE * as_fast,
+                // By then it has cost as much again as the better way would have.
+                (false, true) => 2 * as_fast,
                 (false, false) => MOST_ITERATIONS,
             };
             let before = costs.iterations;
@@ -214,9 +200,13 @@ impl Solver {
 
 /// Iterations with an incomplete factorisation that take as long as a complete one.
 fn iterations_as_fast(model: &Model, matrix: &BlockMatrix, incomplete: &Factor) -> usize {
-    let bytes = 2 * incomplete.work().0 + size_of_val(&matrix.value[..]) as u64;
     let operations = dissection::operations(model.net.nodes.len());
-    (OPERATION_BY_BYTE * operations / bytes as f64) as usize + ITERATIONS_OF_TAIL
+    (OPERATION_BY_BYTE * operations / bytes_read(matrix, incomplete) as f64) as usize + ITERATIONS_OF_TAIL
+}
+
+/// Memory read for an iteration: the factor forwards and backwards, and the matrix once [bytes].
+fn bytes_read(matrix: &BlockMatrix, factor: &Factor) -> u64 {
+    2 * factor.bytes() + size_of_val(&matrix.value[..]) as u64
 }
 
 /// Replaces the guess in `x` by the solution, with a factor to be made, in at most so many iterations and to such a tolerance.
@@ -232,11 +222,13 @@ fn factorise_and_iterate(
     let mut watch = Watch::start();
     let factorised = factor.factorise(matrix);
     watch.lap(costs, Stage::Factorisation);
+    costs.operations += factor.operations();
     factorised.map_err(|_| SolveError::NotPositiveDefinite)?;
     let solved = gradients::solve(matrix, factor, nodes, rhs, x, (most, tolerance));
     watch.lap(costs, Stage::Iterations);
-    let Solved { iterations, error } = solved.map_err(|_| SolveError::NotConverged)?;
+    let (Ok(Solved { iterations, .. }) | Err(NotConverged { iterations })) = solved;
     costs.iterations += iterations as u64;
-    costs.residual = error;
+    costs.bytes += (iterations as u64 + 1) * bytes_read(matrix, factor);
+    costs.residual = solved.map_err(|_| SolveError::NotConverged)?.error;
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What the machine does at best, to hold the solver against: a roofline.
 
-use sim_core::{Costs, STAGES, Work};
+use sim_core::{Costs, STAGES};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -27,22 +27,22 @@ impl Machine {
         Self { copy: copy(), arithmetic: pulp::Arch::new().dispatch(Arithmetic) }
     }
 
-    /// How near to it the stages of the solver come.
-    pub fn compare(&self, costs: &Costs, work: Work) -> String {
-        let seconds = |name: &str| {
+    /// How near to it the stages of the solver on the CPU come; None where it did nothing.
+    pub fn compare(&self, costs: &Costs) -> Option<String> {
+        if costs.operations == 0 {
+            return None;
+        }
+        let by_second = |count: u64, name: &str| {
             let stage = STAGES.iter().position(|s| *s == name).unwrap_or_default();
-            costs.stages[stage].as_secs_f64().max(1e-12)
+            1e-9 * count as f64 / costs.stages[stage].as_secs_f64().max(1e-12)
         };
-        // Every solution applies the factor once more than it iterates.
-        let applied = (costs.iterations + costs.attempts) as f64;
-        let moved = applied * work.iteration_bytes as f64 / seconds("iterations") / 1e9;
-        let done =
-            costs.attempts as f64 * work.factorisation_operations as f64 / seconds("factorisation") / 1e9;
-        format!(
+        let moved = by_second(costs.bytes, "iterations");
+        let done = by_second(costs.operations, "factorisation");
+        Some(format!(
             "iterations read {moved:.1} GB/s (a plain copy moves {:.1}), the factorisation does {done:.1} Gflop/s (multiplying \
              and adding alone {:.1})",
             self.copy, self.arithmetic
-        )
+        ))
     }
 }
 

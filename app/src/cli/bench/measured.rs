@@ -15,6 +15,7 @@ pub struct Measured {
     /// Time of the processor, over all threads [s].
     cpu_s: f64,
     simulated_s: f64,
+    steps: u64,
     rejected: u64,
     facts: Facts,
     finite: bool,
@@ -46,20 +47,21 @@ impl Measured {
             solver: simulation.solver(),
             adapter: simulation.adapter().map(str::to_owned),
             simulated_s: simulation.progress().time_s - began.time_s,
+            steps: simulation.progress().steps - began.steps,
             rejected: simulation.progress().rejected - began.rejected,
             facts: simulation.facts()?,
             finite: simulation.state()?.is_finite(),
             device_bytes: simulation.device_bytes(),
             peak_mib: peak_mib(),
-            compared: simulation.work().map(|work| machine.compare(&costs, work)),
+            compared: machine.compare(&costs),
         })
     }
 
     fn per_step(&self, sum: f64) -> f64 {
-        sum / self.costs.attempts.max(1) as f64
+        sum / self.steps.max(1) as f64
     }
 
-    /// Clock time of a step [ms].
+    /// Clock time of a step, with what was solved for it in vain [ms].
     fn ms_per_step(&self) -> f64 {
         self.per_step(1e3 * self.costs.stages.iter().map(|t| t.as_secs_f64()).sum::<f64>())
     }
@@ -79,7 +81,7 @@ impl Measured {
 
     /// Clock time of so much simulated time [s].
     pub fn clock_s_of(&self, time_s: f64) -> f64 {
-        1e-3 * self.ms_per_step() * self.costs.attempts as f64 * time_s / self.simulated_s
+        1e-3 * self.ms_per_step() * self.steps as f64 * time_s / self.simulated_s
     }
 
     /// All columns by name.
@@ -90,7 +92,7 @@ impl Measured {
             ("loops", json!(self.loops)),
             ("solver", json!(self.solver)),
             ("adapter", json!(self.adapter)),
-            ("steps", json!(self.costs.attempts - self.rejected)),
+            ("steps", json!(self.steps)),
             ("ms_per_step", json!(self.ms_per_step())),
             ("stages_ms", json!(stages)),
             ("iterations", json!(self.iterations())),
@@ -100,6 +102,7 @@ impl Measured {
             ("device_mib", json!(self.device_bytes as f64 / MIB)),
             ("max_stretch_error", json!(self.facts.max_stretch)),
             ("min_yarn_distance_over_diameter", json!(self.facts.min_yarn_distance_over_diameter)),
+            ("solutions", json!(self.costs.attempts)),
             ("rejected_steps", json!(self.rejected)),
             ("finite", json!(self.finite)),
         ];
@@ -119,7 +122,7 @@ impl Measured {
         format!(
             "{} loops, {} solver{on}: {:.1} ms a step ({}), {:.3} ms a loop in 1 000 steps\n  {:.1} iterations, residual {:.1e}, \
              {:.5} s of processor per stitch and simulated second{peak}{device}\n  largest stretch {:.4}, least yarn distance \
-             {:.3} diameters, {} of {} steps taken again, {}finite{compared}",
+             {:.3} diameters, {} steps, {} more solved twice for segments held, {} taken again in smaller ones, {}finite{compared}",
             self.loops,
             self.solver,
             self.ms_per_step(),
@@ -130,8 +133,9 @@ impl Measured {
             self.cpu_s_per_stitch_and_sim_s(),
             self.facts.max_stretch,
             self.facts.min_yarn_distance_over_diameter,
+            self.steps,
+            self.costs.attempts.saturating_sub(self.steps + self.rejected),
             self.rejected,
-            self.costs.attempts,
             if self.finite { "" } else { "NOT " },
         )
     }
