@@ -348,6 +348,8 @@ fn segments(net: &YarnNet, dye_of: &[u32]) -> Result<Vec<SegmentTerm>, NetError>
             0.0
         } else if touches(NodeKind::Crossing) {
             0.5
+        } else if stencil.nodes.iter().all(|n| net.nodes[n.index()].kind == NodeKind::Thread) {
+            2.0
         } else {
             1.0
         };

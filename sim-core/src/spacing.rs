@@ -21,7 +21,7 @@ impl Spacing {
 
     /// Of any other; `closeness` over the parallel distance.
     pub fn free(material: &Material, closeness: f64, rest: f64) -> Self {
-        let distance = closeness * material.parallel_distance.min(rest);
+        let distance = (closeness * material.parallel_distance).min(rest);
         Self::Free(Parallel { stiffness: material.parallel_stiffness, distance })
     }
 }

@@ -71,6 +71,8 @@ pub(crate) struct Stepper {
     /// How firmly bodies, pins and other layers hold each node in this step, as a mass: h²k + hc in the mean of all directions,
     /// [node_count] [kg].
     held: Vec<f64>,
+    /// Velocities and rates of the last system that was solved, of the model's unknowns.
+    solution: Vec<f64>,
     /// The nodes at which yarns slide on each other.
     pub stacks: Vec<Stack>,
     /// Force of each body on the fabric in the last step that went well [N].
@@ -103,6 +105,7 @@ impl Stepper {
             grips: Vec::new(),
             layers,
             held: Vec::new(),
+            solution: Vec::new(),
             stacks,
             body_forces: Vec::new(),
             costs: Costs::default(),
@@ -160,12 +163,15 @@ impl Stepper {
         let held = self.add_pins(state, scene, time_s + h, h);
         braces.add(&self.model, &mut self.system, &self.materials, state, h);
         watch.lap(&mut self.costs, Stage::Contacts);
-        let mut solution = self.rates(state);
+        if braces.is_empty() {
+            self.solution = self.rates(state);
+        }
         self.costs.attempts += 1;
         let System { matrix, rhs, .. } = &self.system;
-        self.solver.solve(&self.model, matrix, rhs, &mut solution, &mut self.costs)?;
+        let solve = if braces.is_empty() { Solver::solve } else { Solver::solve_again };
+        solve(&mut self.solver, &self.model, matrix, rhs, &mut self.solution, &mut self.costs)?;
         let mut watch = Watch::start();
-        let (mut velocity, rate) = self.split(&solution);
+        let (mut velocity, rate) = self.split(&self.solution);
         if touching.is_empty() && held == 0 && air == 0.0 {
             let kept = Rotation { omega: rotation.omega / (1.0 + h * self.mean_mass_damping()), ..rotation };
             self.keep_rotation(state, &mut velocity, kept);

@@ -8,16 +8,24 @@
 //! - Hessian in (d, Δu), exact and of rank one: k_s/Δu (d, −|w|)(d, −|w|)ᵀ; across d, k_s (1/Δu − 1/l) (I − d dᵀ), which
 //!   is negative in a compressed segment and then left out.
 //!
+//! **Slack.** In a compressed segment ∂V/∂Δu is zero at Δu = l, but ∂²V/∂Δu² = k_s l²/Δu³ is so small that a Newton step goes
+//! (1 + |w|)/(2|w|²) times as far as l: 1.7 times at l = 0.7 Δu, and on to negative Δu. Where that is more than [`BEYOND`], the secant
+//! k_s/2 (1 − |w|²)/(Δu − l) over `BEYOND` takes its place, with which the step goes that far.
+//!
 //! **Crimp.** Yarn that climbs by c across the fabric on its way from x₀ to x₁, over or under another, is l = √(|r|² + c²)
 //! long (see `woven.rs`); c = 0 for all others. Then ∇l = r/l takes the place of d, and across it the stiffness is
 //! k_s (1/Δu − 1/l) (I − ∇l ∇lᵀ).
 //!
 //! # Differences from the paper
 //! The paper differentiates in full. Leaving out compression across d is what keeps the matrix definite: a slack yarn
-//! would buckle sideways, which the bending stiffness resists anyway.
+//! would buckle sideways, which the bending stiffness resists anyway. Forces are the paper's in slack yarn too; with the paper's
+//! Hessian edges that shrink in the first steps of a garment lost all of their yarn in one step, however short.
 
 use crate::local::{Element, LEAST_LENGTH, Local, point, put};
 use glam::DVec3;
+
+/// How far a step in Δu may go in slack yarn, over the way to where it is slack no more.
+pub(crate) const BEYOND: f64 = 1.1;
 
 /// Stretch of a segment over (x₀, u₀, x₁, u₁).
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +42,13 @@ impl Stretch {
     fn measure(&self, q: &[f64; 8]) -> (DVec3, f64, f64) {
         let r = point(q, 4) - point(q, 0);
         (r, r.length().hypot(self.climb).max(LEAST_LENGTH), (q[7] - q[3]).max(LEAST_LENGTH))
+    }
+
+    /// What the stiffness of slack yarn in Δu is greater by than its second derivative [N/m].
+    #[inline(always)]
+    fn slack(&self, l: f64, du: f64) -> f64 {
+        let w = l / du;
+        self.stiffness / du * (0.5 * (1.0 + w) / BEYOND - w * w).max(0.0)
     }
 
     /// k_s (1/Δu − 1/l)₊: stiffness of a taut segment across its own direction [N/m].
@@ -71,6 +86,11 @@ impl Element<8> for Stretch {
         along[3] = w;
         along[7] = -w;
         local.add_outer(self.stiffness / du, &along);
+        let slack = self.slack(l, du);
+        local.hessian[3][3] += slack;
+        local.hessian[7][7] += slack;
+        local.hessian[3][7] -= slack;
+        local.hessian[7][3] -= slack;
 
         let across = self.across(l, du);
         let d = d.to_array();
@@ -145,6 +165,17 @@ mod tests {
                 DVec3::new(0.3, -2.0, 1.1),
                 [0, 4],
             );
+        }
+    }
+
+    #[test]
+    fn slack_yarn_is_drawn_to_its_length_and_little_further() {
+        for q in cases(0.05..0.99) {
+            let (_, l, du) = STRETCH.measure(&q);
+            let local = STRETCH.expand(&q);
+            let step = -local.gradient[7] / local.hessian[7][7];
+            let way = step / (l - du);
+            assert!((1.0 - 1e-9..BEYOND + 1e-9).contains(&way), "{way} of the way from {du} to {l}");
         }
     }
 

@@ -4,9 +4,10 @@
 //! tight. Cut to length at once they would jump, so the yarn is drawn out of them over [`TIME`]. Drawing a length out of
 //! a segment moves all later sliding coordinates of its yarn down by it, and makes a closed yarn so much shorter.
 //!
-//! Of the whole that a yarn is to give, each of those segments gives in proportion to the yarn that it has just then. The yarn slides
-//! meanwhile, so a length of its own for each would be drawn out of some that no longer have it: sewing yarn ran backwards there, and no
-//! step was small enough.
+//! Of the whole that a yarn is to give, each of those segments gives in proportion to what it has just then above its length in the end.
+//! The yarn slides meanwhile, so a length of its own for each would be drawn out of some that no longer have it: sewing yarn ran
+//! backwards there, and no step was small enough. In proportion to all that they have, stitches of a seam that were laid short gave
+//! too, and ended shorter than yarn is thick.
 //!
 //! How far that has come is part of the state ([`YarnState::taken_in`], 0 to 1), so a fabric that is opened again goes on.
 
@@ -14,7 +15,7 @@ use crate::friction::{Anchors, Stack};
 use crate::model::Model;
 use std::sync::Arc;
 use stitch_mesh::ids::VisitId;
-use stitch_mesh::yarn_net::{YarnNet, YarnState};
+use stitch_mesh::yarn_net::{TakenIn, YarnNet, YarnState};
 
 /// How long taking in takes [s].
 const TIME: f64 = 0.4;
@@ -26,6 +27,8 @@ pub(crate) struct TakeIn {
     total: Vec<f64>,
     /// By how much the whole of each yarn becomes shorter, [yarn_count] [m].
     of_yarn: Vec<f64>,
+    /// The sliding coordinates that were laid, [visit_count], or empty if nothing is taken in [m].
+    laid: Vec<f64>,
 }
 
 impl TakeIn {
@@ -52,7 +55,7 @@ impl TakeIn {
                 total[v as usize] = sum;
             }
         }
-        Self { total, of_yarn }
+        Self { total, of_yarn, laid: net.visits.iter().map(|v| v.u).collect() }
     }
 
     /// Shortens the turn of the elements where closed yarns meet their beginning, by `part` of the whole.
@@ -127,23 +130,22 @@ impl TakeIn {
     /// What is added to each sliding coordinate when `part` of it all is taken in, [visit_count] [m].
     fn shifts(&self, net: &YarnNet, state: &YarnState, part: f64) -> Vec<f64> {
         let yarn_of = |segment: VisitId| net.visits[segment.index()].yarn.index();
-        let has = |segment: VisitId| {
-            let next = net.next(segment)?;
-            let yarn = yarn_of(segment);
-            let turn = || Some(net.yarns[yarn].period? - state.taken_in * self.of_yarn[yarn]);
-            let around = if next > segment { 0.0 } else { turn()? };
-            Some(state.sliding[next.index()] + around - state.sliding[segment.index()])
+        let share = |taken: &TakenIn| {
+            let has = self.length(net, taken.segment, &state.sliding, state.taken_in);
+            let laid = self.length(net, taken.segment, &self.laid, 0.0);
+            let sign = self.of_yarn[yarn_of(taken.segment)].signum();
+            Share { has, spare: (sign * (has - (laid - taken.length))).max(0.0) }
         };
-        let mut all = vec![0.0; net.yarns.len()];
+        let mut all = vec![Share::default(); net.yarns.len()];
         let mut shift = vec![0.0; net.visits.len()];
         for taken in &net.taken_in {
-            all[yarn_of(taken.segment)] += has(taken.segment).unwrap_or_default();
+            let (all, share) = (&mut all[yarn_of(taken.segment)], share(taken));
+            *all = Share { has: all.has + share.has, spare: all.spare + share.spare };
         }
         for taken in &net.taken_in {
             let yarn = yarn_of(taken.segment);
             if let Some(next) = net.next(taken.segment).filter(|next| *next > taken.segment) {
-                let share = has(taken.segment).unwrap_or_default() / all[yarn];
-                shift[next.index()] -= part * self.of_yarn[yarn] * share;
+                shift[next.index()] -= all[yarn].draw(share(taken), part * self.of_yarn[yarn]);
             }
         }
         for yarn in &net.yarns {
@@ -154,6 +156,31 @@ impl TakeIn {
             }
         }
         shift
+    }
+
+    /// Yarn from a visit to the next, with these sliding coordinates and so much of all taken in [m].
+    fn length(&self, net: &YarnNet, segment: VisitId, sliding: &[f64], taken_in: f64) -> f64 {
+        let Some(next) = net.next(segment) else { return 0.0 };
+        let yarn = net.visits[segment.index()].yarn.index();
+        let turn = || net.yarns[yarn].period.map_or(0.0, |period| period - taken_in * self.of_yarn[yarn]);
+        let around = if next > segment { 0.0 } else { turn() };
+        sliding[next.index()] + around - sliding[segment.index()]
+    }
+}
+
+/// Yarn that a segment has, or all those of a yarn that are taken in, and what of it is more than there is to be in the end [m].
+#[derive(Clone, Copy, Default)]
+struct Share {
+    has: f64,
+    spare: f64,
+}
+
+impl Share {
+    /// What one of all these segments gives of `length`: spare yarn first, and where that is not enough in proportion to what it has.
+    fn draw(self, one: Share, length: f64) -> f64 {
+        let from_spare = length.clamp(-self.spare, self.spare);
+        let part = |of: f64, all: f64| if all > 0.0 { of / all } else { 0.0 };
+        from_spare * part(one.spare, self.spare) + (length - from_spare) * part(one.has, self.has)
     }
 }
 
@@ -224,6 +251,23 @@ mod tests {
             let taken: Vec<f64> = lengths.windows(2).map(|w| (w[0] - w[1]) / target).collect();
             assert!((taken[0] - 0.5).abs() < 0.05 && (taken[0] + taken[1] - 1.0).abs() < 1e-6, "{taken:?}");
         }
+    }
+
+    #[test]
+    fn a_segment_that_is_short_enough_gives_nothing() {
+        let net = with_cable(rectangle(8, 6, StitchSize::of_width(3e-3)).unwrap(), [29, 30, 31, 32, 33]);
+        let take_in = TakeIn::new(&net);
+        let taken = net.taken_in[1];
+        let next = net.next(taken.segment).unwrap();
+        let mut state = net.laid_state();
+        let given = |state: &YarnState| {
+            let shift = take_in.shifts(&net, state, 0.1);
+            shift[taken.segment.index()] - shift[next.index()]
+        };
+        assert!(given(&state) > 0.0);
+        // All that it is to lose has slid on into the next segment.
+        state.sliding[next.index()] -= taken.length;
+        assert!(given(&state).abs() < 1e-15, "{}", given(&state));
     }
 
     #[test]

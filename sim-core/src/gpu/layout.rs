@@ -3,7 +3,7 @@
 //! A record is declared in Rust and its WGSL text generated from the declaration. All fields are `f32` or `u32`, so both
 //! sides agree on every offset, in uniforms and in arrays alike. A test parses what is generated and compares.
 
-use crate::{air, bend, friction, layers, local, mass, overshoot, shear, step, surroundings};
+use crate::{air, bend, friction, layers, local, mass, overshoot, shear, step, stretch, surroundings};
 use std::fmt::Write as _;
 
 /// Declares records of words.
@@ -372,12 +372,13 @@ pub(crate) fn prelude() -> String {
 }
 
 /// Constants of the physics.
-fn floats() -> [(&'static str, f64); 15] {
+fn floats() -> [(&'static str, f64); 16] {
     [
         ("LEAST_LENGTH", local::LEAST_LENGTH),
         ("BEND_JAM_FACTOR", bend::JAM_FACTOR),
         ("SHEAR_JAM_FACTOR", shear::JAM_FACTOR),
         ("SLIDING_MASS", mass::SLIDING_MASS),
+        ("BEYOND", stretch::BEYOND),
         ("BODY_STIFFNESS", surroundings::BODY_STIFFNESS),
         ("NEAREST", layers::NEAREST),
         ("FARTHEST", layers::FARTHEST),

@@ -91,6 +91,9 @@ const MOST_ITERATIONS: usize = 80;
 /// Iterations after which to give up where nothing else is left: the systems of shorter steps take fewer.
 const MOST_ITERATIONS_ALONE: usize = 240;
 
+/// Iterations after which a factor made for a matrix that was a little different is given up: with a brace or two it takes 5 … 10 more.
+const MOST_ITERATIONS_AGAIN: usize = 40;
+
 /// Time of an operation of a complete factorisation, over that of reading a byte in an iteration.
 const OPERATION_BY_BYTE: f64 = 0.1;
 
@@ -119,6 +122,8 @@ pub(crate) struct Solver {
     adapts: bool,
     /// Systems to go before the incomplete factorisation is tried again.
     direct_for: u32,
+    /// How the last system was solved.
+    last: Method,
 }
 
 impl Solver {
@@ -141,13 +146,50 @@ impl Solver {
     /// Solves by a complete factorisation.
     pub fn direct(model: &Model, matrix: &BlockMatrix) -> Self {
         let complete = Factor::new(Pattern::complete(model, matrix));
-        Self { incomplete: None, complete: Some(complete), adapts: false, direct_for: 0 }
+        Self {
+            incomplete: None,
+            complete: Some(complete),
+            adapts: false,
+            direct_for: 0,
+            last: Method::Direct,
+        }
     }
 
     /// Solves by an incomplete factorisation, and where that fails by a complete one if the system is not too large.
     pub fn iterative(model: &Model, matrix: &BlockMatrix) -> Self {
         let incomplete = Factor::new(Pattern::incomplete(model, matrix));
-        Self { incomplete: Some(incomplete), complete: None, adapts: false, direct_for: 0 }
+        Self {
+            incomplete: Some(incomplete),
+            complete: None,
+            adapts: false,
+            direct_for: 0,
+            last: Method::Iterative,
+        }
+    }
+
+    /// Like [`Solver::solve`], of a matrix that has changed in a few places since the last one was solved: the factor that was made
+    /// for that does, unless it turns out not to.
+    pub fn solve_again(
+        &mut self,
+        model: &Model,
+        matrix: &BlockMatrix,
+        rhs: &[f64],
+        x: &mut [f64],
+        costs: &mut Costs,
+    ) -> Result<(), SolveError> {
+        let nodes = &model.start[..model.net.nodes.len()];
+        let (factor, tolerance) = match self.last {
+            Method::Direct => (&mut self.complete, TOLERANCE_OF_COMPLETE),
+            Method::Iterative => (&mut self.incomplete, TOLERANCE),
+        };
+        if let Some(factor) = factor {
+            let guess = x.to_vec();
+            if iterate(matrix, factor, nodes, rhs, x, (MOST_ITERATIONS_AGAIN, tolerance), costs).is_ok() {
+                return Ok(());
+            }
+            x.copy_from_slice(&guess);
+        }
+        self.solve(model, matrix, rhs, x, costs)
     }
 
     /// Replaces the guess in `x` by the solution of `matrix` x = `rhs`.
@@ -178,6 +220,7 @@ impl Solver {
                 self.direct_for = DIRECT_AFTER;
             }
             if alone || solved.is_ok() {
+                self.last = Method::Iterative;
                 return solved;
             }
             tracing::debug!("the incomplete factorisation failed, solving directly");
@@ -186,6 +229,7 @@ impl Solver {
             Some(complete) => complete,
             none => none.insert(Factor::new(Pattern::complete(model, matrix))),
         };
+        self.last = Method::Direct;
         factorise_and_iterate(
             matrix,
             complete,
@@ -224,6 +268,20 @@ fn factorise_and_iterate(
     watch.lap(costs, Stage::Factorisation);
     costs.operations += factor.operations();
     factorised.map_err(|_| SolveError::NotPositiveDefinite)?;
+    iterate(matrix, factor, nodes, rhs, x, (most, tolerance), costs)
+}
+
+/// Replaces the guess in `x` by the solution, with a factor that has been made, in at most so many iterations and to such a tolerance.
+fn iterate(
+    matrix: &BlockMatrix,
+    factor: &mut Factor,
+    nodes: &[u32],
+    rhs: &[f64],
+    x: &mut [f64],
+    (most, tolerance): (usize, f64),
+    costs: &mut Costs,
+) -> Result<(), SolveError> {
+    let mut watch = Watch::start();
     let solved = gradients::solve(matrix, factor, nodes, rhs, x, (most, tolerance));
     watch.lap(costs, Stage::Iterations);
     let (Ok(Solved { iterations, .. }) | Err(NotConverged { iterations })) = solved;

@@ -6,7 +6,7 @@ use crate::cable::Cable;
 use crate::dye::Dye;
 use crate::edge_counts::{EdgeCounts, StitchSize};
 use crate::grid::grid;
-use crate::ids::{FaceId, VertexId};
+use crate::ids::{FaceId, VertexId, VisitId};
 use crate::pieces::{rectangle, tube};
 use crate::seam::Seam;
 use crate::stitch_mesh::StitchMesh;
@@ -233,6 +233,34 @@ fn seams_catch_every_edge_of_both_sides() {
     assert_eq!(sewn(&net), 6 + 8);
     let inner = stitches.sew(Seam { a: vec![v(10), v(11)], b: vec![v(0), v(1)] });
     assert!(inner.unwrap_err().to_string().contains("not an edge of the border"));
+}
+
+#[test]
+fn a_pulled_seam_has_room_for_both_borders() {
+    let width = 3e-3;
+    let mut stitches = rectangle(8, 6, StitchSize::of_width(width)).unwrap();
+    let v = |i: usize| VertexId::new(i);
+    let left: Vec<_> = (0..=6).map(|j| v(j * 9)).collect();
+    let right: Vec<_> = (0..=6).map(|j| v(j * 9 + 8)).collect();
+    let top: Vec<_> = (0..=8).map(|i| v(6 * 9 + i)).collect();
+    // How long the segments that are taken in are in the end.
+    let pulled = |stitches: &StitchMesh| -> Vec<f64> {
+        let net = lay(stitches);
+        let laid = |v: VisitId| net.visits[net.next(v).unwrap().index()].u - net.visits[v.index()].u;
+        net.taken_in.iter().map(|t| (laid(t.segment) - t.length) / width).collect()
+    };
+    stitches.sew(Seam { a: left.clone(), b: right }).unwrap();
+    // To and fro between the edges of one row, and on to the next: a quarter of a stitch on either side, and two yarns between.
+    let across = 0.5 + 0.66 * 0.75_f64.sqrt();
+    for (i, length) in pulled(&stitches).into_iter().enumerate() {
+        let along = if i % 2 == 0 { 0.0 } else { 0.75 };
+        assert!((length - across.hypot(along)).abs() < 1e-6, "{i}: {length}");
+    }
+    // Of 6 + 8 edges some that follow each other are on one side. From one to the next the yarn stays as it lies.
+    stitches.unsew(&[[left[1], left[0]]]);
+    stitches.sew(Seam { a: left, b: top }).unwrap();
+    let lengths = pulled(&stitches);
+    assert!(lengths.len() < 6 + 8 - 1 && lengths.iter().all(|l| (0.9..1.5).contains(l)), "{lengths:?}");
 }
 
 #[test]

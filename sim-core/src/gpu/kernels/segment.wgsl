@@ -67,11 +67,12 @@ fn segment(@builtin(global_invocation_id) id: vec3<u32>) {
         pull = yarn.length * (length_u / term.rest - 1.0);
         stiffness = yarn.length / term.rest;
     } else {
-        let overlap = term.closeness * min(yarn.parallel_distance, term.rest) - length_u;
+        let overlap = min(term.closeness * yarn.parallel_distance, term.rest) - length_u;
         pull = select(0.0, -yarn.parallel * overlap, overlap > 0.0);
         stiffness = select(0.0, yarn.parallel, overlap > 0.0);
     }
-    let spacing = h * (h + yarn.stiffness_damping) * stiffness;
+    let slack = yarn.stretch / du * max(0.5 * (1.0 + ratio) / BEYOND - ratio * ratio, 0.0);
+    let spacing = h * (h + yarn.stiffness_damping) * stiffness + h * h * slack;
 
     // Impulse on the second end; the opposite on the first.
     let impulse = vec4<f32>(-h * tension * d + spin, h * (weight_u - by_du - pull));
