@@ -140,6 +140,44 @@ fn both_solve_a_tail_and_notice_where_it_lacks() {
 }
 
 #[test]
+fn a_system_that_changed_a_little_is_solved_with_the_old_factor() {
+    let [(_, stitches), ..] = fabrics();
+    let mut hanging = Hanging::new(&stitches);
+    hanging.step();
+    let Stepper { model, system, .. } = &hanging.stepper;
+    let nodes = model.net.nodes.len();
+    let largest = |x: &mut dyn Iterator<Item = f64>| x.fold(0.0, |m: f64, x| m.max(x.abs()));
+    // One node is made heavier; or all are, each in its own way.
+    for (method, heavier, anew) in [
+        (Method::Direct, nodes / 2..nodes / 2 + 1, false),
+        (Method::Iterative, nodes / 2..nodes / 2 + 1, false),
+        (Method::Direct, 0..nodes, true),
+        (Method::Iterative, 0..nodes, true),
+    ] {
+        let mut changed = system.matrix.clone();
+        for node in heavier {
+            let mass = 1e-6 * 10_f64.powi(node as i32 % 7);
+            (0..3).for_each(|axis| changed.add_diagonal(model.start[node] as usize + axis, mass));
+        }
+        let solve = |solver: &mut Solver, matrix: &_, x: &mut [f64], costs: &mut Costs| {
+            solver.solve(model, matrix, &system.rhs, x, costs).unwrap();
+        };
+        let (mut expected, mut x) = (vec![0.0; system.rhs.len()], vec![0.0; system.rhs.len()]);
+        solve(&mut Solver::direct(model, &changed), &changed, &mut expected, &mut Costs::default());
+        let apart = |x: &[f64]| {
+            largest(&mut x.iter().zip(&expected).map(|(a, b)| a - b)) / largest(&mut expected.iter().copied())
+        };
+        let (mut solver, mut costs) = (Solver::new(model, &changed, Some(method)), Costs::default());
+        solve(&mut solver, &system.matrix, &mut x, &mut costs);
+        let (once, before) = (costs.operations, apart(&x));
+        solver.solve_again(model, &changed, &system.rhs, &mut x, &mut costs).unwrap();
+        println!("{method:?}: {before:.1e}, then {:.1e}", apart(&x));
+        assert!(before > CLOSE && apart(&x) < CLOSE);
+        assert_eq!(costs.operations > once, anew);
+    }
+}
+
+#[test]
 fn a_wrong_matrix_is_noticed() {
     let [(_, stitches), ..] = fabrics();
     let mut hanging = Hanging::new(&stitches);
