@@ -79,8 +79,11 @@ pub(crate) const TOLERANCE: f64 = 5e-4;
 const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
 
 /// Systems solved directly after one for which that would have been faster: what made that one hard is still there in the next few,
-/// and trying in vain costs as much as solving.
+/// and trying in vain costs as much as solving. Each time that it was in vain again it is twice as many, at most [`MOST_DIRECT_AFTER`].
 const DIRECT_AFTER: u32 = 16;
+
+/// See [`DIRECT_AFTER`].
+const MOST_DIRECT_AFTER: u32 = 256;
 
 /// Unknowns above which nothing is solved directly: it takes gigabytes. A step that fails is taken again in two.
 const MOST_DIRECT: usize = 1_500_000;
@@ -91,8 +94,8 @@ const MOST_ITERATIONS: usize = 80;
 /// Iterations after which to give up where nothing else is left: the systems of shorter steps take fewer.
 const MOST_ITERATIONS_ALONE: usize = 240;
 
-/// Iterations after which a factor made for a matrix that was a little different is given up: with a brace or two it takes 5 … 10 more.
-const MOST_ITERATIONS_AGAIN: usize = 40;
+/// Iterations after which a complete factor made for a matrix that was a little different is given up: with a brace or two it takes 5 … 13.
+const MOST_ITERATIONS_AGAIN: usize = 20;
 
 /// Time of an operation of a complete factorisation, over that of reading a byte in an iteration.
 const OPERATION_BY_BYTE: f64 = 0.1;
@@ -122,6 +125,8 @@ pub(crate) struct Solver {
     adapts: bool,
     /// Systems to go before the incomplete factorisation is tried again.
     direct_for: u32,
+    /// What that number will be when the incomplete factorisation is the slower next.
+    direct_after: u32,
     /// How the last system was solved.
     last: Method,
 }
@@ -151,6 +156,7 @@ impl Solver {
             complete: Some(complete),
             adapts: false,
             direct_for: 0,
+            direct_after: DIRECT_AFTER,
             last: Method::Direct,
         }
     }
@@ -163,6 +169,7 @@ impl Solver {
             complete: None,
             adapts: false,
             direct_for: 0,
+            direct_after: DIRECT_AFTER,
             last: Method::Iterative,
         }
     }
@@ -178,13 +185,13 @@ impl Solver {
         costs: &mut Costs,
     ) -> Result<(), SolveError> {
         let nodes = &model.start[..model.net.nodes.len()];
-        let (factor, tolerance) = match self.last {
-            Method::Direct => (&mut self.complete, TOLERANCE_OF_COMPLETE),
-            Method::Iterative => (&mut self.incomplete, TOLERANCE),
+        let (factor, goal) = match self.last {
+            Method::Direct => (&mut self.complete, (MOST_ITERATIONS_AGAIN, TOLERANCE_OF_COMPLETE)),
+            Method::Iterative => (&mut self.incomplete, (MOST_ITERATIONS, TOLERANCE)),
         };
         if let Some(factor) = factor {
             let guess = x.to_vec();
-            if iterate(matrix, factor, nodes, rhs, x, (MOST_ITERATIONS_AGAIN, tolerance), costs).is_ok() {
+            if iterate(matrix, factor, nodes, rhs, x, goal, costs).is_ok() {
                 return Ok(());
             }
             x.copy_from_slice(&guess);
@@ -217,7 +224,10 @@ impl Solver {
             let solved = factorise_and_iterate(matrix, incomplete, nodes, rhs, x, (most, TOLERANCE), costs);
             let slow = self.adapts && costs.iterations - before > as_fast as u64;
             if !alone && (slow || solved.is_err()) {
-                self.direct_for = DIRECT_AFTER;
+                self.direct_for = self.direct_after;
+                self.direct_after = (2 * self.direct_after).min(MOST_DIRECT_AFTER);
+            } else {
+                self.direct_after = DIRECT_AFTER;
             }
             if alone || solved.is_ok() {
                 self.last = Method::Iterative;
