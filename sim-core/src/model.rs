@@ -131,7 +131,8 @@ pub(crate) struct SegmentTerm {
     /// Whether it lies in a stitch contact.
     pub in_contact: bool,
     /// How close its ends may come along the yarn, over the parallel distance: half at nodes where yarns only cross, which
-    /// lie closer; zero next to a loose node, up to which it slides.
+    /// lie closer; twice between two nodes of threaded yarn, which are as thick as it is; zero next to a loose node, up to which it
+    /// slides.
     pub closeness: f64,
 }
 

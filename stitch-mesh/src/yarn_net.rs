@@ -88,12 +88,12 @@ pub struct Loop {
     pub head: Range<u32>,
 }
 
-/// Yarn that is drawn tight when the simulation begins: laid longer than it is to be.
+/// Yarn that is drawn tight when the simulation begins, or let out: laid longer or shorter than it is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TakenIn {
     /// The visit with which the segment begins.
     pub segment: VisitId,
-    /// By how much its rest length becomes shorter [m].
+    /// By how much its rest length becomes shorter; negative where it becomes longer [m].
     pub length: f64,
 }
 

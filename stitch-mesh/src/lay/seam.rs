@@ -14,7 +14,7 @@ use crate::stitch_mesh::StitchMesh;
 use crate::yarn_net::NodeKind;
 use glam::DVec3;
 
-/// How far apart the edges of a pulled seam stay, over the root of the area of a stitch: two strands of yarn.
+/// How far apart the edges of a pulled seam stay, over the root of the area of a stitch: a strand of yarn.
 const BETWEEN: f64 = 0.33;
 /// How far inside of its edge the sewing yarn catches the fabric, as a part of the stitch there.
 const INSET: f64 = 0.25;
