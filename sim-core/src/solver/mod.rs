@@ -75,9 +75,6 @@ const CROSSOVER: usize = 1_500;
 /// stitches is, after 0.2 s and 65 mm, at most 8 µm from where the direct solver has it with 1e-4, and some 100 µm with 1e-3.
 pub(crate) const TOLERANCE: f64 = 5e-4;
 
-/// The same with a complete factorisation, of which each iteration makes the error some hundred times smaller.
-const TOLERANCE_OF_COMPLETE: f64 = 1e-5;
-
 /// Systems solved directly after one for which that would have been faster: what made that one hard is still there in the next few,
 /// and trying in vain costs as much as solving. Each time that it was in vain again it is twice as many, at most [`MOST_DIRECT_AFTER`].
 const DIRECT_AFTER: u32 = 16;
@@ -94,8 +91,8 @@ const MOST_ITERATIONS: usize = 80;
 /// Iterations after which to give up where nothing else is left: the systems of shorter steps take fewer.
 const MOST_ITERATIONS_ALONE: usize = 240;
 
-/// Iterations after which a complete factor made for a matrix that was a little different is given up: with a brace or two it takes 5 … 13.
-const MOST_ITERATIONS_AGAIN: usize = 20;
+/// Iterations after which a complete factor made for a matrix that was a little different is given up: with braces it takes 3 … 25.
+const MOST_ITERATIONS_AGAIN: usize = 30;
 
 /// Time of an operation of a complete factorisation, over that of reading a byte in an iteration.
 const OPERATION_BY_BYTE: f64 = 0.1;
@@ -185,13 +182,13 @@ impl Solver {
         costs: &mut Costs,
     ) -> Result<(), SolveError> {
         let nodes = &model.start[..model.net.nodes.len()];
-        let (factor, goal) = match self.last {
-            Method::Direct => (&mut self.complete, (MOST_ITERATIONS_AGAIN, TOLERANCE_OF_COMPLETE)),
-            Method::Iterative => (&mut self.incomplete, (MOST_ITERATIONS, TOLERANCE)),
+        let (factor, most) = match self.last {
+            Method::Direct => (&mut self.complete, MOST_ITERATIONS_AGAIN),
+            Method::Iterative => (&mut self.incomplete, MOST_ITERATIONS),
         };
         if let Some(factor) = factor {
             let guess = x.to_vec();
-            if iterate(matrix, factor, nodes, rhs, x, goal, costs).is_ok() {
+            if iterate(matrix, factor, nodes, rhs, x, most, costs).is_ok() {
                 return Ok(());
             }
             x.copy_from_slice(&guess);
@@ -221,7 +218,8 @@ impl Solver {
                 (false, false) => MOST_ITERATIONS,
             };
             let before = costs.iterations;
-            let solved = factorise_and_iterate(matrix, incomplete, nodes, rhs, x, (most, TOLERANCE), costs);
+            let solved = factorised(incomplete, matrix, costs)
+                .and_then(|factor| iterate(matrix, factor, nodes, rhs, x, most, costs));
             let slow = self.adapts && costs.iterations - before > as_fast as u64;
             if !alone && (slow || solved.is_err()) {
                 self.direct_for = self.direct_after;
@@ -240,15 +238,8 @@ impl Solver {
             none => none.insert(Factor::new(Pattern::complete(model, matrix))),
         };
         self.last = Method::Direct;
-        factorise_and_iterate(
-            matrix,
-            complete,
-            nodes,
-            rhs,
-            x,
-            (MOST_ITERATIONS_OF_TAIL, TOLERANCE_OF_COMPLETE),
-            costs,
-        )
+        let factor = factorised(complete, matrix, costs)?;
+        iterate(matrix, factor, nodes, rhs, x, MOST_ITERATIONS_OF_TAIL, costs)
     }
 }
 
@@ -263,36 +254,31 @@ fn bytes_read(matrix: &BlockMatrix, factor: &Factor) -> u64 {
     2 * factor.bytes() + size_of_val(&matrix.value[..]) as u64
 }
 
-/// Replaces the guess in `x` by the solution, with a factor to be made, in at most so many iterations and to such a tolerance.
-fn factorise_and_iterate(
+/// The factor, made anew of `matrix`.
+fn factorised<'a>(
+    factor: &'a mut Factor,
     matrix: &BlockMatrix,
-    factor: &mut Factor,
-    nodes: &[u32],
-    rhs: &[f64],
-    x: &mut [f64],
-    (most, tolerance): (usize, f64),
     costs: &mut Costs,
-) -> Result<(), SolveError> {
+) -> Result<&'a mut Factor, SolveError> {
     let mut watch = Watch::start();
-    let factorised = factor.factorise(matrix);
+    let made = factor.factorise(matrix);
     watch.lap(costs, Stage::Factorisation);
     costs.operations += factor.operations();
-    factorised.map_err(|_| SolveError::NotPositiveDefinite)?;
-    iterate(matrix, factor, nodes, rhs, x, (most, tolerance), costs)
+    made.map(|()| factor).map_err(|_| SolveError::NotPositiveDefinite)
 }
 
-/// Replaces the guess in `x` by the solution, with a factor that has been made, in at most so many iterations and to such a tolerance.
+/// Replaces the guess in `x` by the solution to [`TOLERANCE`], in at most so many iterations.
 fn iterate(
     matrix: &BlockMatrix,
     factor: &mut Factor,
     nodes: &[u32],
     rhs: &[f64],
     x: &mut [f64],
-    (most, tolerance): (usize, f64),
+    most: usize,
     costs: &mut Costs,
 ) -> Result<(), SolveError> {
     let mut watch = Watch::start();
-    let solved = gradients::solve(matrix, factor, nodes, rhs, x, (most, tolerance));
+    let solved = gradients::solve(matrix, factor, nodes, rhs, x, (most, TOLERANCE));
     watch.lap(costs, Stage::Iterations);
     let (Ok(Solved { iterations, .. }) | Err(NotConverged { iterations })) = solved;
     costs.iterations += iterations as u64;
