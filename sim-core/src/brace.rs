@@ -204,7 +204,7 @@ mod tests {
         let (mut stepper, mut now, segment) = swatch();
         let [a, b] = stepper.model.segments[segment].stencil.nodes.map(|n| n.index());
         let along = now.state.position[b] - now.state.position[a];
-        now.state.velocity[a] = 2.0 / H * along.length() * along.any_orthonormal_vector();
+        now.state.velocity[a] = 12.0 / H * along.length() * along.any_orthonormal_vector();
         now.state.velocity[b] = -now.state.velocity[a];
         let failures = unheld(&mut stepper, &now);
         assert!(failures.contains(&Failure { segment, excess: Excess::Leaping }), "{failures:?}");

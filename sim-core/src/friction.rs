@@ -60,7 +60,7 @@ impl Stack {
             visits: n.visits.iter().copied().collect(),
             parallel: n.visits.windows(2).map(|w| parallel(w[0], w[1])).collect(),
         };
-        net.nodes.iter().enumerate().filter(|(_, n)| n.visits.len() > 1).map(stack).collect()
+        net.nodes.iter().enumerate().filter(|(_, n)| n.slides()).map(stack).collect()
     }
 
     /// The parallel neighbours in it, front first.

@@ -15,6 +15,10 @@ use stitch_mesh::yarn_net::{YarnNet, YarnState};
 /// it curls would hang on rounding.
 const NOISE: f64 = 1e-6;
 
+/// Longest step that a simulation begins with [s]. Yarn that was just laid jumps into its first shape, and edited yarn does where it was
+/// edited; longer steps come soon, one [`GROWTH`](crate::simulator::GROWTH) after the other.
+const FIRST_STEP: f64 = 5e-3;
+
 /// A simulation without a solver. Where yarns stick on each other is left out: they stick where they are.
 #[derive(Clone)]
 pub(crate) struct Handover {
@@ -46,5 +50,10 @@ impl Handover {
             *x += DVec3::new(noise(0), noise(1), noise(2));
         }
         Ok(Self { model, take_in, materials, scene, state, progress: Progress::default() })
+    }
+
+    /// The step to begin with [s].
+    pub fn first_step(&self) -> f64 {
+        self.scene.time_step.min(FIRST_STEP)
     }
 }

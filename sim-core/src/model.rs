@@ -311,7 +311,7 @@ fn layout(net: &YarnNet) -> (Vec<u32>, Vec<u32>) {
     let mut next = 0;
     for node in &net.nodes {
         next += 3;
-        if node.visits.len() > 1 {
+        if node.slides() {
             for visit in &node.visits {
                 sliding[visit.index()] = next;
                 next += 1;
@@ -349,7 +349,7 @@ fn segments(net: &YarnNet, dye_of: &[u32]) -> Result<Vec<SegmentTerm>, NetError>
             0.0
         } else if touches(NodeKind::Crossing) {
             0.5
-        } else if stencil.nodes.iter().all(|n| net.nodes[n.index()].kind == NodeKind::Thread) {
+        } else if stencil.nodes.iter().all(|n| net.nodes[n.index()].kind == NodeKind::Seam) {
             2.0
         } else {
             1.0

@@ -12,7 +12,16 @@ use stitch_mesh::yarn_net::YarnState;
 
 /// Stiffness of a body against a node, in masses of the node per squared time step. At 1 fabric sinks in under its own
 /// weight, at 1e4 a corner that touches down alone upsets the conditioning.
-pub(crate) const BODY_STIFFNESS: f64 = 100.0;
+const BODY_STIFFNESS: f64 = 100.0;
+
+/// Longest time step that makes bodies softer [s]. In steps of 1/30 s the shoulders of a mannequin would come through the sweater that
+/// hangs from them, 5 mm.
+const SOFTEST: f64 = 0.01;
+
+/// Stiffness of bodies, and of layers of the fabric, against a node, over its mass [1/s²].
+pub(crate) fn stiffness_by_mass(scene: &Scene) -> f64 {
+    BODY_STIFFNESS / scene.time_step.min(SOFTEST).powi(2)
+}
 
 /// Nodes in a run that is told from a body by the box around it.
 const RUN: usize = 64;
@@ -52,7 +61,7 @@ impl Stepper {
             let near = runs.iter().filter(|run| body.is_near(run.bounds, run.reach));
             for node in near.flat_map(|run| run.nodes.clone()) {
                 let (x, v, mass) = (state.position[node], state.velocity[node], self.masses[node]);
-                let stiffness = BODY_STIFFNESS * mass / scene.time_step.powi(2);
+                let stiffness = stiffness_by_mass(scene) * mass;
                 let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
                 let (gap, normal) = contact.gap(x);
                 let surface = body.velocity(x);

@@ -13,7 +13,7 @@ use crate::yarn_net::{NodeKind, YarnNet};
 pub fn loose_loops(stitches: &StitchMesh, net: &YarnNet) -> Vec<HalfEdgeId> {
     let holds = |visit: u32| {
         let node = net.visits[visit as usize].node;
-        matches!(net.nodes[node.index()].kind, NodeKind::Stitch | NodeKind::Thread)
+        matches!(net.nodes[node.index()].kind, NodeKind::Stitch | NodeKind::Thread | NodeKind::Seam)
     };
     let loose = net.loops.iter().filter(|l| !l.head.clone().any(holds));
     loose.map(|l| l.top).filter(|top| !stitches.is_live(handed_on_to(stitches, *top))).collect()

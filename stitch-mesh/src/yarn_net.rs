@@ -12,7 +12,7 @@
 //! | visits | node |
 //! |---|---|
 //! | 1 | a tail or a turn; its sliding coordinate is frozen (the node moves with its yarn) |
-//! | 2 | a plain contact, or two yarns crossing, as warp and weft do |
+//! | 2 | a plain contact, or two yarns crossing, as warp and weft do; at a seam both are frozen |
 //! | n + 1 | a decrease: n stacked loops and the yarn that goes through them |
 //!
 //! A net knows nothing of stitch symbols. It lives from the laying of the yarn to the next edit of the stitch mesh.
@@ -30,8 +30,10 @@ use std::sync::Arc;
 pub enum NodeKind {
     /// An end of a stitch contact: yarn pulled through loops, wrapped around them.
     Stitch,
-    /// Yarn threaded through a loop: gathered loops, the last one of a bind-off, a seam.
+    /// Yarn threaded through a loop: gathered loops, the last one of a bind-off.
     Thread,
+    /// Sewing yarn that has caught a border. Neither of the two slides there.
+    Seam,
     /// Yarns that cross and hold nothing: a cable, a slipped loop, the legs of a twisted one.
     Crossing,
     /// Warp and weft that cross in woven cloth.
@@ -55,6 +57,15 @@ pub struct Node {
     pub face: Option<FaceId>,
     /// What happens there.
     pub kind: NodeKind,
+    /// Where a pulled seam brings it from there, towards the other border; zero away from seams [m].
+    pub closing: DVec3,
+}
+
+impl Node {
+    /// Whether its yarns slide along each other.
+    pub fn slides(&self) -> bool {
+        self.visits.len() > 1 && self.kind != NodeKind::Seam
+    }
 }
 
 /// One yarn passing one node.
@@ -174,9 +185,9 @@ impl YarnNet {
         (0..self.yarns.len()).flat_map(|yarn| self.segments_of(YarnId::new(yarn)))
     }
 
-    /// Whether the sliding coordinate of `visit` is frozen: its node has no other yarn to slide along.
+    /// Whether the sliding coordinate of `visit` is frozen: its node has no other yarn to slide along, or is sewn.
     pub fn is_frozen(&self, visit: VisitId) -> bool {
-        self.nodes[self.visits[visit.index()].node.index()].visits.len() == 1
+        !self.nodes[self.visits[visit.index()].node.index()].slides()
     }
 
     /// Adds the yarns of another net behind those of this one, as they are: each keeps to itself.

@@ -22,6 +22,7 @@ use crate::simulator::{GROWTH, MOST_HALVINGS, SimError, StepReport, model_after}
 use crate::solver::{SolveError, TOLERANCE};
 use crate::step::Rejection;
 use crate::surgery::{self, Operation, slip};
+use crate::surroundings::stiffness_by_mass;
 use crate::take_in::TakeIn;
 use glam::DVec3;
 use std::sync::Arc;
@@ -93,6 +94,7 @@ impl GpuSimulator {
         most: u64,
         from: Handover,
     ) -> Result<Self, SimError> {
+        let step = from.first_step();
         let Handover { model, take_in, materials, scene, state, progress } = from;
         fit(&scene)?;
         let origin = state.position.iter().sum::<DVec3>() / state.position.len().max(1) as f64;
@@ -109,7 +111,7 @@ impl GpuSimulator {
             materials,
             taken_in: state.taken_in,
             fields: Vec::new(),
-            step: scene.time_step,
+            step,
             scene,
             read_at: progress.clone(),
             progress,
@@ -239,13 +241,13 @@ impl GpuSimulator {
 
     /// What is the same for all elements in a step of `h`.
     pub(crate) fn params(&self, h: f64) -> Params {
-        let Scene { gravity, air, time_step, bodies, pins, clamps, .. } = &self.scene;
+        let Scene { gravity, air, bodies, pins, clamps, .. } = &self.scene;
         let [gravity, origin] = [gravity.as_vec3(), self.origin.as_vec3()];
         let widest = self.system.tables.nodes.iter().map(|n| n.clearance).fold(0.0, f32::max);
         let is_free = pins.is_empty() && clamps.iter().all(|c| c.nodes.is_empty()) && *air == 0.0;
         self.system.sized(Params {
             h: h as f32,
-            scene_step: *time_step as f32,
+            stiffness_by_mass: stiffness_by_mass(&self.scene) as f32,
             gravity_x: gravity.x,
             gravity_y: gravity.y,
             gravity_z: gravity.z,

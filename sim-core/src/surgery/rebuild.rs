@@ -131,7 +131,14 @@ pub(super) fn rebuild(net: &YarnNet, state: &YarnState, mut pieces: Vec<Piece>) 
                 }
                 Place::End { position: [laid, now], velocity: v, normal } => {
                     let (visits, kind) = (SmallVec::from_slice(&[id]), NodeKind::Loose);
-                    nodes.push(Node { position: laid, normal, visits, face: None, kind });
+                    nodes.push(Node {
+                        position: laid,
+                        normal,
+                        visits,
+                        face: None,
+                        kind,
+                        closing: DVec3::ZERO,
+                    });
                     position.push(now);
                     velocity.push(v);
                     (Some(NodeId::new(nodes.len() - 1)), None)

@@ -141,6 +141,7 @@ impl<'a> FaceYarn<'a> {
             visits: few(visits),
             face: Some(face),
             kind: template.kind,
+            closing: DVec3::ZERO,
         }
     }
 

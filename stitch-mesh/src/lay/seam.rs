@@ -63,7 +63,7 @@ fn lay(
         // From the edge to the opposite one.
         let inwards = 2.0 * (mesh.face_center(face) - middle);
         let normal = (vertex_normals[a.index()] + vertex_normals[b.index()]).normalize_or(DVec3::Z);
-        let node = draft.add_node(middle + INSET * inwards, normal, NodeKind::Thread, -0.5 * inwards);
+        let node = draft.add_node(middle + INSET * inwards, normal, NodeKind::Seam, -0.5 * inwards);
         let port: Port = if stitches.is_wale(h) {
             wale_port(h)
         } else {

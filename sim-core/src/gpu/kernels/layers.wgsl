@@ -40,9 +40,16 @@ fn nearest(apart: vec3<f32>, v: vec3<f32>) -> f32 {
     return length(apart + time * v);
 }
 
+// How far a pulled seam brings a node.
+fn closing(n: u32) -> vec3<f32> {
+    let xy = unpack2x16snorm(nodes[n].closing_xy);
+    return CLOSING * vec3<f32>(xy, unpack2x16snorm(nodes[n].closing_z).x);
+}
+
 fn distance_kept(a: u32, b: u32) -> f32 {
     let laid = vec3<f32>(nodes[a].laid_x - nodes[b].laid_x, nodes[a].laid_y - nodes[b].laid_y, nodes[a].laid_z - nodes[b].laid_z);
-    return min(nodes[a].clearance + nodes[b].clearance, NEAREST * length(laid));
+    let apart = min(length(laid), length(laid + closing(a) - closing(b)));
+    return min(nodes[a].clearance + nodes[b].clearance, NEAREST * apart);
 }
 
 @compute @workgroup_size(NARROW)
@@ -98,7 +105,7 @@ fn meet(@builtin(global_invocation_id) id: vec3<u32>) {
         let normal = apart / length(apart);
         let gap = length(apart) - distance_kept(a, b);
         let mass = min(nodes[a].mass, nodes[b].mass);
-        let stiffness = BODY_STIFFNESS / (params.scene_step * params.scene_step) * mass;
+        let stiffness = params.stiffness_by_mass * mass;
         let past = v - velocity[b].xyz;
         let slip = length(past - dot(past, normal) * normal);
         let press = stiffness * max(-gap, 0.0);

@@ -125,7 +125,7 @@ fn constants_are_those_of_the_physics() {
     for (name, value) in [
         ("BEND_JAM_FACTOR", crate::bend::JAM_FACTOR),
         ("SLIDING_MASS", crate::mass::SLIDING_MASS),
-        ("BODY_STIFFNESS", crate::surroundings::BODY_STIFFNESS),
+        ("NEAREST", crate::layers::NEAREST),
         ("LEAST_LENGTH", crate::local::LEAST_LENGTH),
     ] {
         assert!(text.contains(&format!("const {name}: f32 = {value:e};")), "{name}");

@@ -83,7 +83,7 @@ fn segments_that_turn_are_drawn_back_as_on_the_cpu() {
     println!("{apart:.1e} m apart, {longer:.1e} longer");
     // They fly by 0.4 mm, twice as far as those that CLOSE is for.
     assert!(apart < 3.0 * CLOSE && longer.abs() < 1e-4);
-    let Some((apart, longer)) = thrown_about(&spoilt("overshoot", "sum += drawn", "sum += 0.7 * drawn"))
+    let Some((apart, longer)) = thrown_about(&spoilt("overshoot", "sum += drawn", "sum += 0.1 * drawn"))
     else {
         return;
     };
