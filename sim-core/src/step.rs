@@ -7,7 +7,7 @@
 //! # Practice
 //! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
 //! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
-//! yarn, its ends move against each other by more than 1.2 of its length. Where that is a few segments, they are held and
+//! yarn, its ends move against each other by more than its length. Where that is a few segments, they are held and
 //! the step is solved again first (`brace.rs`).
 
 use crate::assembly::{Start, System};
@@ -34,7 +34,7 @@ use stitch_mesh::yarn_net::{Node, YarnState};
 /// How far the ends of a segment may move against each other in a step, over its length. The paper allows a half. But the yarn that a
 /// segment gains by turning is drawn back (`overshoot.rs`), and in a garment that comes to lie on shoulders in steps of 1/30 s the segments
 /// of its seams turn by a radian.
-pub(crate) const LEAP: f64 = 1.2;
+pub(crate) const LEAP: f64 = 1.0;
 
 /// Why a step was thrown away.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -48,7 +48,7 @@ pub enum Rejection {
     /// A segment would lose more than half of its yarn.
     #[error("segment {0} loses more than half of its yarn")]
     Shrinking(usize),
-    /// The ends of a segment would move against each other by more than 1.2 of its length.
+    /// The ends of a segment would move against each other by more than its length.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
     /// More layers of the fabric meet than the GPU has room for.

@@ -57,8 +57,6 @@ pub struct Node {
     pub face: Option<FaceId>,
     /// What happens there.
     pub kind: NodeKind,
-    /// Where a pulled seam brings it from there, towards the other border; zero away from seams [m].
-    pub closing: DVec3,
 }
 
 impl Node {

@@ -31,7 +31,7 @@ impl Buffers {
         let mut whole = BTreeMap::from([
             ("params", gpu.upload("params", &[Params::default()])),
             ("materials", gpu.upload("materials", &yarns(materials))),
-            ("nodes", gpu.upload("nodes", &tables.node_records())),
+            ("nodes", gpu.upload("nodes", &tables.nodes)),
             ("stacked", gpu.upload("stacked", &tables.stacked)),
             ("pulls", gpu.upload("pulls", &tables.pulls)),
             ("around", gpu.upload("around", &tables.around)),

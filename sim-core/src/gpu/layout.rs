@@ -3,7 +3,6 @@
 //! A record is declared in Rust and its WGSL text generated from the declaration. All fields are `f32` or `u32`, so both
 //! sides agree on every offset, in uniforms and in arrays alike. A test parses what is generated and compares.
 
-use super::tables;
 use crate::{air, bend, friction, layers, local, mass, overshoot, shear, step, stretch};
 use std::fmt::Write as _;
 
@@ -166,8 +165,8 @@ records! {
         width: u32,
         /// Its visits in the list of stacked visits.
         visit: u32,
-        /// The groups before its own whose elimination changes it; they end where those of the next node begin.
-        incoming: u32,
+        /// The groups before its own whose elimination changes it.
+        incoming: u32, incoming_end: u32,
         /// Its neighbours along yarns.
         around: u32, around_end: u32,
         /// Radius of the yarns at it, doubled; mass; √μ.
@@ -177,8 +176,6 @@ records! {
         /// Where it was laid and which way was its front.
         laid_x: f32, laid_y: f32, laid_z: f32,
         normal_x: f32, normal_y: f32, normal_z: f32,
-        /// Where a pulled seam brings it from where it was laid, over CLOSING, sixteen bits a coordinate.
-        closing_xy: u32, closing_z: u32,
     }
     /// A block of the matrix: the unknowns of its columns, and the row in the front of its group that they are.
     Block {
@@ -375,7 +372,7 @@ pub(crate) fn prelude() -> String {
 }
 
 /// Constants of the physics.
-fn floats() -> [(&'static str, f64); 16] {
+fn floats() -> [(&'static str, f64); 15] {
     [
         ("LEAST_LENGTH", local::LEAST_LENGTH),
         ("BEND_JAM_FACTOR", bend::JAM_FACTOR),
@@ -383,7 +380,6 @@ fn floats() -> [(&'static str, f64); 16] {
         ("SLIDING_MASS", mass::SLIDING_MASS),
         ("BEYOND", stretch::BEYOND),
         ("NEAREST", layers::NEAREST),
-        ("CLOSING", tables::CLOSING),
         ("FARTHEST", layers::FARTHEST),
         ("LEAP", step::LEAP),
         ("DRAWN_LEFT", overshoot::LEFT),

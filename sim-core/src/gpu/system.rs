@@ -82,7 +82,7 @@ impl System {
     /// Changes what follows from materials.
     pub fn set_materials(&mut self, materials: &[Material]) {
         self.write("materials", &yarns(materials));
-        self.write("nodes", &self.tables.node_records());
+        self.write("nodes", &self.tables.nodes);
         for (c, chunk) in self.tables.chunks.iter().enumerate() {
             if let Some(buffer) = self.buffers.find(Some(c), "shears") {
                 self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&chunk.shears));

@@ -19,15 +19,6 @@ use crate::take_in::TakeIn;
 use glam::DVec3;
 use stitch_mesh::ids::VisitId;
 
-/// How far a seam can bring a node: as far as sixteen bits go, in steps of 8 µm [m].
-pub(crate) const CLOSING: f64 = 0.25;
-
-/// What `unpack2x16snorm` turns into a part of [`CLOSING`].
-fn sixteen_bits(length: f64) -> u32 {
-    let whole = (length / CLOSING).clamp(-1.0, 1.0) * f64::from(i16::MAX);
-    u32::from((whole.round() as i16).cast_unsigned())
-}
-
 /// A run of groups with all the elements around their nodes.
 #[derive(Default)]
 pub(crate) struct Chunk {
@@ -110,12 +101,6 @@ impl Tables {
         Ok(tables)
     }
 
-    /// The nodes as they lie on the device, and one behind them, where their lists end.
-    pub fn node_records(&self) -> Vec<Node> {
-        let end = Node { incoming: self.incoming.len() as u32, ..Node::default() };
-        self.nodes.iter().copied().chain([end]).collect()
-    }
-
     /// Number of unknowns.
     pub fn dof_count(&self) -> u32 {
         self.pattern.dof.last().copied().unwrap_or_default()
@@ -163,6 +148,7 @@ impl Tables {
         for (n, from) in pattern.incoming().into_iter().enumerate() {
             self.nodes[n].incoming = self.incoming.len() as u32;
             self.incoming.extend(from);
+            self.nodes[n].incoming_end = self.incoming.len() as u32;
         }
         columns
     }
@@ -187,8 +173,6 @@ impl Tables {
             let laid = (node.position - self.origin).as_vec3();
             (record.laid_x, record.laid_y, record.laid_z) = laid.into();
             (record.normal_x, record.normal_y, record.normal_z) = node.normal.as_vec3().into();
-            let [x, y, z] = node.closing.to_array().map(sixteen_bits);
-            (record.closing_xy, record.closing_z) = (x | y << 16, z);
         }
     }
 

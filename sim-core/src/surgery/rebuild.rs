@@ -131,14 +131,7 @@ pub(super) fn rebuild(net: &YarnNet, state: &YarnState, mut pieces: Vec<Piece>) 
                 }
                 Place::End { position: [laid, now], velocity: v, normal } => {
                     let (visits, kind) = (SmallVec::from_slice(&[id]), NodeKind::Loose);
-                    nodes.push(Node {
-                        position: laid,
-                        normal,
-                        visits,
-                        face: None,
-                        kind,
-                        closing: DVec3::ZERO,
-                    });
+                    nodes.push(Node { position: laid, normal, visits, face: None, kind });
                     position.push(now);
                     velocity.push(v);
                     (Some(NodeId::new(nodes.len() - 1)), None)

@@ -126,14 +126,7 @@ impl<'a> Draft<'a> {
 
     /// Adds a node that no yarn visits yet. `outward` as in [`Self::node`].
     pub fn add_node(&mut self, position: DVec3, normal: DVec3, kind: NodeKind, outward: DVec3) -> NodeId {
-        self.nodes.push(Node {
-            position,
-            normal,
-            visits: SmallVec::new(),
-            face: None,
-            kind,
-            closing: DVec3::ZERO,
-        });
+        self.nodes.push(Node { position, normal, visits: SmallVec::new(), face: None, kind });
         self.outward.push(outward);
         NodeId::new(self.node_count() - 1)
     }
@@ -272,7 +265,6 @@ impl Cell<'_> {
             visits: node.stack.iter().map(|v| number(*v)).collect(),
             face: None,
             kind: node.kind,
-            closing: DVec3::ZERO,
         };
         (placed, mean(&node.outward, self.corners))
     }

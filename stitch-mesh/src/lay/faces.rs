@@ -141,7 +141,6 @@ impl<'a> FaceYarn<'a> {
             visits: few(visits),
             face: Some(face),
             kind: template.kind,
-            closing: DVec3::ZERO,
         }
     }
 

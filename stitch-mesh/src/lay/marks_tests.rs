@@ -14,7 +14,6 @@ use crate::tessellate::tessellate;
 use crate::unravel::loose_loops;
 use crate::wrapping::Wrapping;
 use crate::yarn_net::{NodeKind, YarnNet};
-use glam::DVec3;
 
 /// Every loop is held.
 fn holds(stitches: &StitchMesh, net: &YarnNet) {
@@ -257,16 +256,6 @@ fn a_pulled_seam_has_room_for_both_borders() {
         let along = if i % 2 == 0 { 0.0 } else { 0.75 };
         assert!((length - across.hypot(along)).abs() < 1e-6, "{i}: {length}");
     }
-    // Where that brings the borders: the two nodes of a stitch of sewing yarn about as far apart as it is long then.
-    let net = lay(&stitches);
-    let node = |v: VisitId| &net.nodes[net.visits[v.index()].node.index()];
-    for taken in net.taken_in.iter().step_by(2) {
-        let next = net.next(taken.segment).unwrap();
-        let [a, b] = [taken.segment, next].map(|v| node(v).position + node(v).closing);
-        assert!((a.distance(b) / width - across).abs() < 0.25, "{}", a.distance(b) / width);
-    }
-    let (sewn, all) = (net.nodes.iter().filter(|n| n.closing != DVec3::ZERO).count(), net.nodes.len());
-    assert!(sewn > 4 * 12 && sewn < all / 2, "{sewn} of {all}");
     // Of 6 + 8 edges some that follow each other are on one side. From one to the next the yarn stays as it lies.
     stitches.unsew(&[[left[1], left[0]]]);
     stitches.sew(Seam { a: left, b: top }).unwrap();

@@ -22,8 +22,7 @@
 //! 4. `border`: cast-on along bottom edges, bind-off along top edges (`bind_off`), rows joined at their ends so that a flat
 //!    piece is one yarn going back and forth;
 //! 5. `seam`: sewing yarns;
-//! 6. `trace`: pieces joined into yarns, arc lengths measured;
-//! 7. `closing`: where pulled seams bring their borders.
+//! 6. `trace`: pieces joined into yarns, arc lengths measured.
 //!
 //! The paper makes the first row of faces the cast-on. Here cast-on and bind-off lie outside of the mesh, so that every face
 //! stays a stitch that can be chosen, and borders may lie anywhere.
@@ -44,7 +43,6 @@
 mod bind_off;
 mod border;
 mod cable;
-mod closing;
 mod draft;
 mod faces;
 mod relay;
@@ -74,11 +72,7 @@ pub fn lay(stitches: &StitchMesh) -> YarnNet {
     let spirals = if stitches.marks().spiral { spiral::wind(stitches, &rows, &mut draft) } else { vec![] };
     let bound_off = border::finish(stitches, &rows, &normals, &spirals, &mut draft);
     seam::sew(stitches, &normals, &bound_off, &mut draft);
-    let mut net = trace::trace(draft);
-    if !stitches.seams().is_empty() {
-        closing::close(&mut net);
-    }
-    net
+    trace::trace(draft)
 }
 
 /// A place where yarn crosses an edge: two for each half-edge of the mesh, and more beyond its borders.

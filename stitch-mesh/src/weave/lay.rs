@@ -22,7 +22,7 @@ impl Woven {
         };
         let node = |position: DVec3, kind: NodeKind| {
             let visits = SmallVec::new();
-            Node { position, normal, visits, face: None, kind, closing: DVec3::ZERO }
+            Node { position, normal, visits, face: None, kind }
         };
         let mut net = YarnNet::default();
         for pick in 0..self.picks {

@@ -17,8 +17,8 @@ const RUNS: [(&str, usize); 6] = [
     ("t-shirt", 100_000),
     ("t-shirt", 325_000),
 ];
-/// Time step [s]: two in a frame.
-const STEP: f64 = FRAME / 2.0;
+/// Time step [s]: a frame.
+const STEP: f64 = FRAME;
 /// A frame [s].
 const FRAME: f64 = 1.0 / 30.0;
 /// Time before what is measured, in which yarn that was just laid finds its first shape [s].

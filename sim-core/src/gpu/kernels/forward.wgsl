@@ -29,7 +29,7 @@ fn forward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id
         }
         var sum = r[dof];
         let place = dof - nodes[m].dof;
-        for (var k = nodes[m].incoming; k < nodes[m + 1u].incoming; k++) {
+        for (var k = nodes[m].incoming; k < nodes[m].incoming_end; k++) {
             sum -= handed[incoming[k] + place];
         }
         known[i] = sum;

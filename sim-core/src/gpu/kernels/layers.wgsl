@@ -40,16 +40,9 @@ fn nearest(apart: vec3<f32>, v: vec3<f32>) -> f32 {
     return length(apart + time * v);
 }
 
-// How far a pulled seam brings a node.
-fn closing(n: u32) -> vec3<f32> {
-    let xy = unpack2x16snorm(nodes[n].closing_xy);
-    return CLOSING * vec3<f32>(xy, unpack2x16snorm(nodes[n].closing_z).x);
-}
-
 fn distance_kept(a: u32, b: u32) -> f32 {
     let laid = vec3<f32>(nodes[a].laid_x - nodes[b].laid_x, nodes[a].laid_y - nodes[b].laid_y, nodes[a].laid_z - nodes[b].laid_z);
-    let apart = min(length(laid), length(laid + closing(a) - closing(b)));
-    return min(nodes[a].clearance + nodes[b].clearance, NEAREST * apart);
+    return min(nodes[a].clearance + nodes[b].clearance, NEAREST * length(laid));
 }
 
 @compute @workgroup_size(NARROW)
