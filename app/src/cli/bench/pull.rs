@@ -20,7 +20,7 @@ const LOOP: f64 = 3e-3;
 const PULL: f64 = 0.2;
 const TIME: f64 = 0.2;
 /// Time step [s].
-const STEP: f64 = 0.02;
+const STEP: f64 = 0.025;
 /// Stiffness of what holds each node at the sides [N/m].
 const STIFFNESS: f64 = 10.0;
 
