@@ -1,7 +1,8 @@
 //! The elements of a net, and the layout of its unknowns.
 //!
 //! # Theory
-//! A node with n ≥ 2 visits has 3 + n unknowns (x, u₁, …, uₙ); a node with one visit has 3, its u is frozen. Elements:
+//! A node with n ≥ 2 visits has 3 + n unknowns (x, u₁, …, uₙ); a node with one visit has 3, its u is frozen, and so
+//! has a node of a seam, where nothing slides. Elements:
 //!
 //! | element | one for each |
 //! |---|---|
@@ -131,7 +132,7 @@ pub(crate) struct SegmentTerm {
     /// Whether it lies in a stitch contact.
     pub in_contact: bool,
     /// How close its ends may come along the yarn, over the parallel distance: half at nodes where yarns only cross, which
-    /// lie closer; twice between two nodes of threaded yarn, which are as thick as it is; zero next to a loose node, up to which it
+    /// lie closer; twice between two nodes of sewing yarn, which are as thick as it is; zero next to a loose node, up to which it
     /// slides.
     pub closeness: f64,
 }

@@ -4,7 +4,8 @@
 //! the cast-on, the chain of the bind-off, the leg of a live loop. The sides take turns in proportion to their numbers of edges. Until
 //! it is pulled the yarn reaches across the gap; it is taken in, or let out where the gap is narrow, until the edges lie against each
 //! other ([`BETWEEN`]). Along the seam it stays as long as the borders are: pulled tighter than that it would gather them. Pulled
-//! tighter across it would press the borders through each other, and yarn that has nowhere to go makes every step fail.
+//! tighter across it would press the borders through each other, and yarn that has nowhere to go makes every step fail. It does not
+//! slide where it has caught a border ([`NodeKind::Seam`]): why, is said where it is taken in (`sim-core`: `take_in`).
 
 use super::border::BoundOff;
 use super::{Draft, Port, course_port, wale_port};
