@@ -217,10 +217,10 @@ enum Verb {
         /// What to measure
         #[arg(value_enum, default_value = "pull")]
         suite: bench::Suite,
-        /// For scale: leave out what has more loops
+        /// For growth and scale: leave out what has more loops
         #[arg(long, default_value_t = 60_000)]
         most_loops: usize,
-        /// What to solve with; steps compares the direct and the iterative one if absent
+        /// What to solve with; if absent, growth takes the iterative one, and steps compares that with the direct one
         #[arg(long, value_enum)]
         solver: Option<Solver>,
         #[command(flatten)]

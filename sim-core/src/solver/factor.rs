@@ -12,16 +12,12 @@
 //! from masses to stiffnesses. Dropping can leave a block that is not positive definite; then a part of the diagonal is added.
 //! Parts run beside each other, and what they do to the joint is added up in their order.
 
+use super::elimination::{Elimination, Fronts, Packs};
 use super::gradients::Preconditioner;
 use super::matrix::BlockMatrix;
-use super::packed::{LANES, Packed, Scratch, Tile, pack};
-use super::panel;
-use super::pattern::{Change, Group, Part, Pattern, Run};
-use faer::linalg::matmul::{matmul, triangular};
-use faer::prelude::ReborrowMut;
-use faer::{Accum, MatMut, MatRef, Par};
+use super::packed::{LANES, Packed, Scratch, Tile};
+use super::pattern::{Group, Part, Pattern};
 use rayon::prelude::*;
-use triangular::BlockStructure::{Rectangular, TriangularLower};
 
 /// Parts of the diagonal added to it, tried one after the other.
 const SHIFTS: [f32; 4] = [0.0, 1e-3, 4e-3, 1.6e-2];
@@ -36,9 +32,7 @@ pub(crate) struct NoFactor;
 /// A factorisation of a matrix.
 pub(crate) struct Factor {
     pattern: Pattern,
-    /// Fronts, as described for the module, while they are made.
-    fronts: Vec<f32>,
-    /// All of them packed.
+    /// All fronts, packed.
     tiles: Vec<Tile>,
     /// Scales of their columns, [dof_count].
     columns: Vec<[f32; 2]>,
@@ -51,12 +45,10 @@ pub(crate) struct Factor {
 impl Factor {
     /// Lays out the factor.
     pub fn new(pattern: Pattern) -> Self {
-        let last = pattern.groups.last();
-        let (size, tiles) = last.map_or((0, 0), |g| (g.front.end, g.tiles.end));
+        let tiles = pattern.groups.last().map_or(0, |g| g.tiles.end);
         let count = pattern.place.len();
         Self {
             pattern,
-            fronts: vec![0.0; size],
             tiles: vec![[0; LANES]; tiles],
             columns: vec![[0.0; 2]; count],
             scale: vec![0.0; count],
@@ -93,29 +85,20 @@ impl Factor {
     }
 
     fn factorise_shifted(&mut self, matrix: &BlockMatrix, shift: f32) -> Result<(), NoFactor> {
-        let Self { pattern, fronts, tiles, columns, scale, .. } = self;
-        fronts.fill(0.0);
-        for (j, own) in scale.iter().enumerate() {
-            for k in matrix.column[j] as usize..matrix.column[j + 1] as usize {
-                let scaled = matrix.value[k] * own * scale[matrix.row[k] as usize];
-                fronts[pattern.target[k] as usize] = scaled as f32;
-            }
-        }
-        let (fronts, joint_fronts) = split(fronts, pattern, |p| p.fronts.len());
+        let Self { pattern, tiles, columns, scale, .. } = self;
         let (tiles, joint_tiles) = split(tiles, pattern, |p| p.tiles.len());
         let (columns, joint_columns) = split(columns, pattern, |p| p.unknowns.len());
         let (last, others) = joint_and_others(pattern);
-        let room = || vec![0.0; joint_fronts.len()];
-        let mut halves: Vec<_> = others.iter().zip(fronts).zip(tiles.into_iter().zip(columns)).collect();
-        let eliminated = beside(pattern, &mut halves, |((part, fronts), (tiles, columns))| {
-            let mut outer = room();
-            eliminate(pattern, part, Slices { fronts, tiles, columns }, &mut outer, shift).map(|()| outer)
+        let elimination = Elimination { pattern, matrix, scale, shift };
+        let mut halves: Vec<_> = others.iter().zip(tiles).zip(columns).collect();
+        let eliminated = beside(pattern, &mut halves, |((part, tiles), columns)| {
+            elimination.eliminate(part, Fronts::new(&part.groups), Packs { tiles, columns })
         });
+        let mut joint = Fronts::new(&last.groups);
         for outer in eliminated {
-            joint_fronts.iter_mut().zip(outer?).for_each(|(entry, change)| *entry += change);
+            joint.add(outer?, |group| elimination.filled(group));
         }
-        let joint = Slices { fronts: joint_fronts, tiles: joint_tiles, columns: joint_columns };
-        eliminate(pattern, last, joint, &mut [], shift)
+        elimination.eliminate(last, joint, Packs { tiles: joint_tiles, columns: joint_columns }).map(|_| ())
     }
 }
 
@@ -178,115 +161,6 @@ fn split<'a, T>(
 fn joint_and_others(pattern: &Pattern) -> (&Part, &[Part]) {
     let count = pattern.parts.len() - 1;
     (&pattern.parts[count], &pattern.parts[..count])
-}
-
-/// What of a factor belongs to a part.
-struct Slices<'a> {
-    fronts: &'a mut [f32],
-    tiles: &'a mut [Tile],
-    columns: &'a mut [[f32; 2]],
-}
-
-/// Turns the matrix in the fronts of a part into its factor, and adds to `outer` what that does to the joint.
-fn eliminate(
-    pattern: &Pattern,
-    part: &Part,
-    Slices { fronts, tiles, columns }: Slices,
-    outer: &mut [f32],
-    shift: f32,
-) -> Result<(), NoFactor> {
-    let groups = &pattern.groups[part.groups.clone()];
-    let highest = groups.iter().map(|g| g.rows.len()).max().unwrap_or_default();
-    let (mut inverse, mut product) = (Vec::new(), vec![0.0; highest * highest]);
-    let joint_start = pattern.groups.last().map_or(0, |g| g.front.end) - outer.len();
-    for group in groups {
-        let (n, m) = (group.unknowns.len(), group.rows.len());
-        let later_start = group.front.end;
-        let (own, later) = fronts.split_at_mut(group.front.end - part.fronts.start);
-        let front = &mut own[group.front.start - part.fronts.start..];
-        for i in 0..n {
-            front[i * (n + m) + i] += shift;
-        }
-        inverse.resize(n * n, 0.0);
-        panel::eliminate(front, &mut inverse, n).map_err(|_| NoFactor)?;
-        let scale = &mut columns[group.unknowns.start - part.unknowns.start..][..n];
-        let packed = group.tiles.start - part.tiles.start..group.tiles.end - part.tiles.start;
-        pack(&inverse, front, scale, &mut tiles[packed]);
-        let rows = MatRef::from_column_major_slice(front, n + m, n).subrows(n, m);
-        for changes in group.changes.chunk_by(|a, b| !a.in_place && !b.in_place) {
-            let first = changes[0].columns.start as usize;
-            let (height, width) = (m - first, changes[changes.len() - 1].columns.end as usize - first);
-            let (below, beside) = (rows.subrows(first, height), rows.subrows(first, width).transpose());
-            if !changes[0].in_place {
-                multiply(&mut product[..height * width], below, beside);
-            }
-            for change in changes {
-                let fronts = match change.front.checked_sub(joint_start).filter(|_| !outer.is_empty()) {
-                    Some(start) => &mut outer[start..],
-                    None => &mut later[change.front - later_start..],
-                };
-                if change.in_place {
-                    change.work_out(below, beside, &group.rows, fronts);
-                } else {
-                    change.add(&product[..height * width], height, first, &group.rows, fronts);
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Sets the first columns of the product of `rows` with themselves, from their diagonal down, to what is taken away.
-fn multiply(product: &mut [f32], rows: MatRef<f32>, beside: MatRef<f32>) {
-    let (height, width) = (rows.nrows(), beside.ncols());
-    let (diagonal, below) =
-        MatMut::from_column_major_slice_mut(product, height, width).split_at_row_mut(width);
-    triangular::matmul(
-        diagonal,
-        TriangularLower,
-        Accum::Replace,
-        rows.subrows(0, width),
-        Rectangular,
-        beside,
-        Rectangular,
-        -1.0,
-        Par::Seq,
-    );
-    if height > width {
-        matmul(below, Accum::Replace, rows.subrows(width, height - width), beside, -1.0, Par::Seq);
-    }
-}
-
-impl Change {
-    /// Works out the product of rows of a group with those `beside` and takes it away from a later front, at the start of `fronts`.
-    fn work_out(&self, below: MatRef<f32>, beside: MatRef<f32>, rows: &[u32], fronts: &mut [f32]) {
-        let column = (rows[self.columns.start as usize] - self.first_unknown) as usize;
-        let width = self.columns.len();
-        let front = &mut fronts[column * self.height..(column + width) * self.height];
-        let mut front = MatMut::from_column_major_slice_mut(front, self.height, width);
-        for run in &self.runs {
-            let [from, to, len] = [run.from - self.columns.start, run.to, run.len].map(|x| x as usize);
-            let changed = front.rb_mut().subrows_mut(to, len);
-            matmul(changed, Accum::Add, below.subrows(from, len), beside, -1.0, Par::Seq);
-        }
-    }
-
-    /// Adds what is in `product`, whose first row and column are number `first`, to a later front, at the start of `fronts`.
-    fn add(&self, product: &[f32], height: usize, first: usize, rows: &[u32], fronts: &mut [f32]) {
-        for j in self.columns.clone().map(|j| j as usize) {
-            let start = self.height * (rows[j] - self.first_unknown) as usize;
-            let column = &mut fronts[start..start + self.height];
-            let product = &product[(j - first) * height..(j - first + 1) * height];
-            for Run { from, to, len } in &self.runs {
-                // Above the diagonal is nothing.
-                let [from, to, len] = [*from, *to, *len].map(|x| x as usize);
-                let skipped = j.saturating_sub(from).min(len);
-                let changed = &mut column[to + skipped..to + len];
-                let by = &product[from + skipped - first..from + len - first];
-                changed.iter_mut().zip(by).for_each(|(entry, change)| *entry += change);
-            }
-        }
-    }
 }
 
 /// Solves with a factor.

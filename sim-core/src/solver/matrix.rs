@@ -74,6 +74,12 @@ impl BlockMatrix {
         self.column.len() - 1
     }
 
+    /// The blocks under the diagonal of a node and that on it: the node of their rows and their place in the first column.
+    pub fn blocks(&self, column: usize) -> impl Iterator<Item = (u32, u32)> {
+        let blocks = self.first_block[column] as usize..self.first_block[column + 1] as usize;
+        self.block_node[blocks.clone()].iter().copied().zip(self.block_offset[blocks].iter().copied())
+    }
+
     /// Place of the block (`row`, `column`), `row` ≥ `column`, in the first column of its node. Part of the pattern, or it
     /// is a mistake in the model.
     pub fn block(&self, row: usize, column: usize) -> u32 {

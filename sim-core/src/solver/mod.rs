@@ -38,6 +38,7 @@
 #[cfg(test)]
 mod agreement;
 mod dissection;
+mod elimination;
 pub(crate) mod factor;
 pub(crate) mod gradients;
 pub(crate) mod groups;
@@ -47,6 +48,7 @@ mod panel;
 mod parts;
 pub(crate) mod pattern;
 pub(crate) mod product;
+mod room;
 mod separator;
 pub(crate) mod tail;
 
@@ -81,9 +83,6 @@ const DIRECT_AFTER: u32 = 16;
 
 /// See [`DIRECT_AFTER`].
 const MOST_DIRECT_AFTER: u32 = 256;
-
-/// Unknowns above which nothing is solved directly: it takes gigabytes. A step that fails is taken again in two.
-const MOST_DIRECT: usize = 1_500_000;
 
 /// Iterations after which to give up; a direct solution is faster then, where there is one.
 const MOST_ITERATIONS: usize = 80;
@@ -209,7 +208,7 @@ impl Solver {
         if self.direct_for > 0 {
             self.direct_for -= 1;
         } else if let Some(incomplete) = &mut self.incomplete {
-            let alone = matrix.dof_count() > MOST_DIRECT;
+            let alone = self.complete.is_none() && !room::is_there_for(model.net.nodes.len());
             let as_fast = iterations_as_fast(model, matrix, incomplete);
             let most = match (alone, self.adapts) {
                 (true, _) => MOST_ITERATIONS_ALONE,

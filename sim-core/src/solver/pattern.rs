@@ -9,7 +9,7 @@
 //!
 //! # Practice
 //! Each group has a *front*: one dense matrix with a column for each of its n unknowns, and under the n rows of its own its m
-//! rows of others. Fronts lie one after the other, column by column.
+//! rows of others. It lies column by column.
 
 use super::dissection::dissected;
 use super::groups::groups;
@@ -34,13 +34,10 @@ const LONG: usize = 32;
 
 /// What the elimination of a group does to the front of a later one.
 pub(crate) struct Change {
+    /// Number of the later group.
+    pub group: u32,
     /// Those of the rows that are unknowns of the later group.
     pub columns: Range<u32>,
-    /// First unknown of the later group.
-    pub first_unknown: u32,
-    /// Start of its front in the factor, and rows of that in all.
-    pub front: usize,
-    pub height: usize,
     /// The rows from the first of the columns on, as far as they are in the later front: those of its columns.
     pub runs: Vec<Run>,
     /// Whether the columns follow each other there too and the runs are long: then it is worked out where it goes.
@@ -53,19 +50,35 @@ pub(crate) struct Group {
     pub unknowns: Range<usize>,
     /// The later unknowns that it is joined to, ascending.
     pub rows: Vec<u32>,
-    /// Its front in the factor.
-    pub front: Range<usize>,
-    /// The same, packed.
+    /// Its front in the factor, packed.
     pub tiles: Range<usize>,
+    /// What of the matrix lies in its front.
+    pub blocks: Range<usize>,
     /// What its elimination does to later fronts.
     pub changes: Vec<Change>,
+}
+
+impl Group {
+    /// Rows of its front.
+    pub fn height(&self) -> usize {
+        self.unknowns.len() + self.rows.len()
+    }
+}
+
+/// A block of the matrix in a front.
+pub(crate) struct Block {
+    /// The nodes of its rows and of its columns in the matrix.
+    pub nodes: [u32; 2],
+    /// Its place in the first column of its node.
+    pub offset: u32,
+    /// Where its first row and its first column are in the front, in the order of `nodes`.
+    pub at: [u32; 2],
 }
 
 /// Groups that can be eliminated without the other parts.
 pub(crate) struct Part {
     pub groups: Range<usize>,
     pub unknowns: Range<usize>,
-    pub fronts: Range<usize>,
     pub tiles: Range<usize>,
 }
 
@@ -76,8 +89,8 @@ pub(crate) struct Pattern {
     pub parts: Vec<Part>,
     /// Place of each unknown in the order of elimination.
     pub place: Vec<u32>,
-    /// Place in the factor of each entry of the matrix.
-    pub target: Vec<u32>,
+    /// All blocks of the matrix, by the group in whose front they are.
+    pub blocks: Vec<Block>,
 }
 
 impl Pattern {
@@ -111,30 +124,22 @@ impl Pattern {
         for (g, below) in rows.iter().enumerate() {
             let rows: Vec<u32> = below.iter().flat_map(|n| order.unknowns(model, *n)).collect();
             let unknowns = order.first[g] as usize..order.first[g + 1] as usize;
-            let (front, tiles) = groups.last().map_or((0, 0), |g| (g.front.end, g.tiles.end));
-            let front = front..front + (unknowns.len() + rows.len()) * unknowns.len();
+            let tiles = groups.last().map_or(0, |g| g.tiles.end);
             let tiles = tiles..tiles + tile_count(unknowns.len(), rows.len());
-            groups.push(Group { unknowns, rows, front, tiles, changes: Vec::new() });
+            groups.push(Group { unknowns, rows, tiles, blocks: 0..0, changes: Vec::new() });
         }
         let changes: Vec<_> = groups.par_iter().map(|group| changes(&groups, &order, &group.rows)).collect();
         groups.iter_mut().zip(changes).for_each(|(group, changes)| group.changes = changes);
-        let mut target = Vec::with_capacity(matrix.row.len());
-        for j in 0..matrix.dof_count() {
-            for row in &matrix.row[matrix.column[j] as usize..matrix.column[j + 1] as usize] {
-                let (a, b) = (order.place[j], order.place[*row as usize]);
-                target.push(entry(&groups, &order, a.max(b), a.min(b)).unwrap_or_default() as u32);
-            }
-        }
+        let blocks = order.blocks(matrix, &mut groups);
         let part = |range: Range<usize>| {
             let end =
                 |at: usize, of: &dyn Fn(&Group) -> usize| at.checked_sub(1).map_or(0, |g| of(&groups[g]));
             let within = |of: &dyn Fn(&Group) -> usize| end(range.start, of)..end(range.end, of);
             let unknowns = within(&|g| g.unknowns.end);
-            let (fronts, tiles) = (within(&|g| g.front.end), within(&|g| g.tiles.end));
-            Part { unknowns, fronts, tiles, groups: range }
+            Part { unknowns, tiles: within(&|g| g.tiles.end), groups: range }
         };
         let parts = parts.into_iter().map(part).collect();
-        Self { parts, place: order.place, target, groups }
+        Self { parts, place: order.place, blocks, groups }
     }
 }
 
@@ -220,6 +225,35 @@ impl Order {
         self.tidy(rows);
     }
 
+    /// The blocks of the matrix by the group in whose front they are: the earlier of those of their two nodes.
+    fn blocks(&self, matrix: &BlockMatrix, groups: &mut [Group]) -> Vec<Block> {
+        let mut blocks: Vec<(u32, Block)> = Vec::with_capacity(matrix.block_node.len());
+        for column in 0..self.start.len() as u32 {
+            for (row, offset) in matrix.blocks(column as usize) {
+                let nodes = [row, column];
+                let number =
+                    nodes.map(|n| self.group_of_node[n as usize]).into_iter().min().unwrap_or_default();
+                let group = &groups[number as usize];
+                let place = |node: u32| {
+                    let start = self.start[node as usize];
+                    match (start as usize).checked_sub(group.unknowns.start) {
+                        Some(own) if own < group.unknowns.len() => own,
+                        _ => group.unknowns.len() + group.rows.partition_point(|row| *row < start),
+                    }
+                };
+                blocks.push((number, Block { nodes, offset, at: nodes.map(|n| place(n) as u32) }));
+            }
+        }
+        blocks.sort_by_key(|(group, _)| *group);
+        let mut rest = &blocks[..];
+        for (number, group) in groups.iter_mut().enumerate() {
+            let (own, others) = rest.split_at(rest.partition_point(|(g, _)| *g as usize == number));
+            let first = blocks.len() - rest.len();
+            (group.blocks, rest) = (first..first + own.len(), others);
+        }
+        blocks.into_iter().map(|(_, block)| block).collect()
+    }
+
     fn tidy(&self, rows: &mut [Vec<u32>]) {
         for nodes in rows {
             nodes.sort_unstable_by_key(|n| self.start[*n as usize]);
@@ -228,24 +262,13 @@ impl Order {
     }
 }
 
-/// Place in the factor of the entry (row, column), row ≥ column, if it has one.
-fn entry(groups: &[Group], order: &Order, row: u32, column: u32) -> Option<usize> {
-    let group = &groups[order.group_of_unknown[column as usize] as usize];
-    let (width, (row, column)) = (group.unknowns.len(), (row as usize, column as usize));
-    let below = if row < group.unknowns.end {
-        row - group.unknowns.start
-    } else {
-        width + group.rows.binary_search(&(row as u32)).ok()?
-    };
-    Some(group.front.start + (column - group.unknowns.start) * (width + group.rows.len()) + below)
-}
-
 /// What the elimination of a group with these rows does to later fronts.
 fn changes(groups: &[Group], order: &Order, rows: &[u32]) -> Vec<Change> {
     let group_of = |row: &u32| order.group_of_unknown[*row as usize];
     let mut first = 0;
     let change = |columns: &[u32]| {
-        let group = &groups[group_of(&columns[0]) as usize];
+        let number = group_of(&columns[0]);
+        let group = &groups[number as usize];
         let at = first;
         first += columns.len();
         let place = |row: u32| (row as usize).checked_sub(group.unknowns.start);
@@ -271,14 +294,7 @@ fn changes(groups: &[Group], order: &Order, rows: &[u32]) -> Vec<Change> {
         let count = columns.len();
         let follow = columns[count - 1] - columns[0] == count as u32 - 1;
         let in_place = follow && count >= LONG && rows.len() - at >= LONG * runs.len();
-        Change {
-            in_place,
-            columns: at as u32..first as u32,
-            first_unknown: group.unknowns.start as u32,
-            front: group.front.start,
-            height: width + group.rows.len(),
-            runs,
-        }
+        Change { group: number, in_place, columns: at as u32..first as u32, runs }
     };
     rows.chunk_by(|a, b| group_of(a) == group_of(b)).map(change).collect()
 }

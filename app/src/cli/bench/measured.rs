@@ -66,6 +66,11 @@ impl Measured {
         self.per_step(1e3 * self.costs.stages.iter().map(|t| t.as_secs_f64()).sum::<f64>())
     }
 
+    /// Clock time of a step, of each loop [ms].
+    pub fn ms_per_loop(&self) -> f64 {
+        self.ms_per_step() / self.loops as f64
+    }
+
     /// Clock time of each stage of a step, by name [ms].
     fn stages(&self) -> impl Iterator<Item = (&'static str, f64)> {
         STAGES.into_iter().zip(self.costs.stages.map(|t| self.per_step(1e3 * t.as_secs_f64())))
@@ -127,7 +132,7 @@ impl Measured {
             self.solver,
             self.ms_per_step(),
             stages.join(", "),
-            1e3 * self.ms_per_step() / self.loops as f64,
+            1e3 * self.ms_per_loop(),
             self.iterations(),
             self.costs.residual,
             self.cpu_s_per_stitch_and_sim_s(),

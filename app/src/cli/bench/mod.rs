@@ -3,6 +3,8 @@
 //! Times of the processor are over all threads, so they compare across machines with other things to do; the quality columns
 //! tell whether they were bought with a wrong result.
 
+mod growth;
+mod hanging;
 mod machine;
 mod measured;
 mod pull;
@@ -21,6 +23,8 @@ pub enum Suite {
     Pull,
     /// A step of 1 681 loops, stage by stage, by each solver
     Steps,
+    /// Steps of stockinette that hangs, in more and more loops
+    Growth,
     /// Steps of the sweater and the t-shirt falling on their mannequin, in more and more loops
     Scale,
 }
@@ -34,6 +38,7 @@ pub fn run(suite: Suite, most_loops: usize, solver: Option<Solver>, print: Outpu
             let both = [SolverChoice::Direct, SolverChoice::Iterative];
             steps::run(solver.as_ref().map_or(&both[..], std::slice::from_ref), print)
         }
+        Suite::Growth => growth::run(most_loops, solver.unwrap_or(SolverChoice::Iterative), print),
         Suite::Scale => scale::run(most_loops, solver.unwrap_or_default(), print),
     }
 }
