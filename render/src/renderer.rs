@@ -16,6 +16,11 @@ use crate::{Camera, Gpu, Scene, Viewport};
 
 /// How far ambient occlusion looks around a point, in radii of the thickest yarn: to the next yarn but one.
 const OCCLUSION_REACH: f32 = 4.0;
+/// How many times further yarn may lie beside its spline in a rough picture. Of a garment of 9 500 loops a step then takes in four spans
+/// of yarn instead of two.
+const ROUGHER: f32 = 2.0;
+/// Hollows that reach less far at what is looked at are left out of a rough picture [px].
+const LEAST_ROUGH_HOLLOW: f32 = 3.0;
 
 /// What a picture is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,9 +152,12 @@ impl Renderer {
         let lights = Lights::around(camera);
         let frustum = scene.bounds().filter(|_| self.shadows);
         let frustum = frustum.map(|bounds| ShadowFrustum::new(bounds, camera, size.x / size.y, lights.key));
+        let hollows = scene.yarn.radius() * OCCLUSION_REACH;
+        let fine = viewport.rough && hollows * self.scale(camera, size) < LEAST_ROUGH_HOLLOW;
+        let hollows = if fine { 0.0 } else { hollows };
         let frame = Frame {
             supersampling: self.supersampling as f32,
-            ..frame(camera, size, &lights, frustum.as_ref(), scene.yarn.radius() * OCCLUSION_REACH)
+            ..frame(camera, size, &lights, frustum.as_ref(), hollows)
         };
         viewport.camera.write(&gpu.queue, &frame);
 
@@ -165,10 +173,11 @@ impl Renderer {
             self.yarn.draw_shadow(gpu, &mut pass, &scene.yarn, |center, reach| frustum.scale(center, reach));
         }
 
+        let rougher = if viewport.rough { ROUGHER } else { 1.0 };
         let color = (&viewport.color, viewport.resolved.as_ref());
         let mut pass = begin_pass(encoder, "scene", Some(color), Some((&viewport.depth, 0.0)), false);
         pass.set_bind_group(0, &viewport.lit_frame, &[]);
-        self.yarn.draw(gpu, &mut pass, &scene.yarn, camera.scale_at(size));
+        self.yarn.draw(gpu, &mut pass, &scene.yarn, rougher, camera.scale_at(size));
         self.draw_surfaces(&mut pass, viewport, scene, self.scale(camera, size), None);
         drop(pass);
 

@@ -10,6 +10,8 @@ use crate::{Gpu, RenderError, Renderer};
 #[derive(Debug)]
 pub struct Viewport {
     size: [u32; 2],
+    /// Whether its pictures are replaced at once.
+    pub(crate) rough: bool,
     picture: wgpu::Texture,
     view: wgpu::TextureView,
     /// Where the scene is drawn, in linear light: multisampled or not, and where samples are resolved to.
@@ -58,6 +60,7 @@ impl Viewport {
         ];
         Ok(Self {
             size,
+            rough: false,
             view: picture.create_view(&Default::default()),
             picture,
             lit_frame: bind_group(device, &renderer.lit_frame_layout, lit),
@@ -77,9 +80,14 @@ impl Viewport {
     pub fn resize(&mut self, gpu: &Gpu, renderer: &Renderer, size: [u32; 2]) -> Result<bool, RenderError> {
         let changed = size != self.size;
         if changed {
-            *self = Self::new(gpu, renderer, size)?;
+            *self = Self { rough: self.rough, ..Self::new(gpu, renderer, size)? };
         }
         Ok(changed)
+    }
+
+    /// Lets pictures that are replaced at once cost less, by what is not looked at there.
+    pub fn set_rough(&mut self, rough: bool) {
+        self.rough = rough;
     }
 
     /// Width and height [px].

@@ -16,7 +16,7 @@ use wgpu::CompareFunction::{Greater, Less};
 
 pub use self::layout::YarnLayout;
 use self::layout::reach;
-use self::level::{Batch, Chunk, Level, SAMPLES, SIDES, SPAN_VERTICES, batches};
+use self::level::{Batch, Chunk, ERROR, Level, SAMPLES, SIDES, SPAN_VERTICES, batches};
 use self::transport::{ControlPoint, END};
 use crate::pipeline::{COLOR_FORMAT, Pipeline, STORAGE, bind_group, bind_group_layout, shader};
 use crate::scene::GrowingBuffer;
@@ -240,15 +240,16 @@ impl YarnPipelines {
         Self { frayed, tube, ribbon, thread, shadow, layout, triangles, starts }
     }
 
-    /// Draws what is in the picture; `scale` as in [`batches`].
+    /// Draws what is in the picture, so many times `rougher` than it need be; `scale` as in [`batches`].
     pub fn draw(
         &self,
         gpu: &Gpu,
         pass: &mut wgpu::RenderPass,
         mesh: &YarnMesh,
+        rougher: f32,
         scale: impl Fn(Vec3, f32) -> Option<f32>,
     ) {
-        let batches = batches(&mesh.chunks, scale);
+        let batches = batches(&mesh.chunks, rougher * ERROR, scale);
         let (flat, tubes) = batches.split_at(batches.partition_point(|batch| batch.level.is_flat()));
         let (threads, ribbons) = flat.split_at(flat.partition_point(|batch| batch.level.is_thread()));
         let (plain, frayed) = tubes.split_at(tubes.partition_point(|batch| !batch.level.is_frayed()));
@@ -267,7 +268,7 @@ impl YarnPipelines {
         mesh: &YarnMesh,
         scale: impl Fn(Vec3, f32) -> Option<f32>,
     ) {
-        let mut batches = batches(&mesh.chunks, scale);
+        let mut batches = batches(&mesh.chunks, ERROR, scale);
         for batch in &mut batches {
             batch.level = batch.level.as_ribbon();
         }

@@ -183,6 +183,36 @@ fn a_viewport_is_reused_resized_and_drawn_again() {
 }
 
 #[test]
+fn a_rough_picture_shows_the_same_with_less_where_yarn_is_thin() {
+    let renderer = Renderer::new(gpu(), Quality::Interactive);
+    let mut scene = Scene::new();
+    let yarn = stockinette(63, 63);
+    scene.set_yarn(gpu(), &YarnLayout::of(&yarn)).unwrap();
+    let bounds = Drawing { yarn, ..Default::default() }.bounds().unwrap();
+    // With a yarn of half a pixel, and with one of three.
+    for (zoom, is_thin) in [(2.0, true), (8.0, false)] {
+        let mut camera = Camera::named(NamedView::Front, bounds, 4.0 / 3.0);
+        camera.zoom(zoom);
+        let [fine, rough] = [false, true].map(|rough| {
+            let mut viewport = Viewport::new(gpu(), &renderer, [64, 48]).unwrap();
+            viewport.set_rough(rough);
+            viewport.resize(gpu(), &renderer, SIZE).unwrap();
+            let mut encoder = gpu().device.create_command_encoder(&Default::default());
+            renderer.draw(gpu(), &mut encoder, &viewport, &camera, &scene);
+            gpu().queue.submit([encoder.finish()]);
+            read_back(gpu(), viewport.picture()).unwrap()
+        });
+        let mean = |of: &dyn Fn(f64, f64) -> f64| {
+            let both = fine.as_raw().iter().zip(rough.as_raw());
+            both.map(|(a, b)| of(f64::from(*a), f64::from(*b))).sum::<f64>() / fine.as_raw().len() as f64
+        };
+        let (apart, lighter) = (mean(&|a, b| (a - b).abs()), mean(&|_, b| b) / mean(&|a, _| a));
+        assert_eq!(apart > 0.0, is_thin, "at {zoom}");
+        assert!(apart < 12.0 && (0.95..1.07).contains(&lighter), "{apart} {lighter} at {zoom}");
+    }
+}
+
+#[test]
 fn impossible_sizes_are_refused() {
     for size in [[0, 10], [10, 0], [1 << 20, 10]] {
         let result = render_image(gpu(), size, &Camera::default(), &Drawing::default());

@@ -89,14 +89,15 @@ impl Screen {
         Ok(self.scene.set_solids(&self.gpu, solids)?)
     }
 
-    /// Draws a picture of `size` pixels; of half that where the processor itself draws and something is `moving`. Where nothing
-    /// has changed it is the picture that was drawn last.
+    /// Draws a picture of `size` pixels; of half that, and rough, where the processor itself draws and something is `moving`. Where
+    /// nothing has changed it is the picture that was drawn last.
     ///
     /// # Errors
     /// No such size.
     pub fn draw(&mut self, size: [u32; 2], camera: &Camera, moving: bool) -> Result<Pasted> {
-        let shrink = if moving && self.gpu.is_software() { 2 } else { 1 };
-        let size = size.map(|pixels| (pixels / shrink).max(1));
+        let rough = moving && self.gpu.is_software();
+        let size = size.map(|pixels| if rough { pixels / 2 } else { pixels }.max(1));
+        self.viewport.set_rough(rough);
         if self.viewport.resize(&self.gpu, &self.renderer, size)? {
             self.pasted = self.paste.of(&self.gpu, self.viewport.view());
         }

@@ -40,8 +40,8 @@ const FRAYED: usize = 4;
 /// A tube of so many sides is used up to this radius [px], where the flat sides show by half a pixel or so; a thread up to
 /// where the two sides of the yarn can be told apart.
 const TUBE_RADII: [f32; 5] = [0.75, 5.0, 7.0, 13.0, 28.0];
-/// How far drawn yarn may lie beside the spline [px]: 0.5 is seen at the outline, 0.2 only costs time.
-const ERROR: f32 = 0.35;
+/// How far drawn yarn may lie beside the spline in a picture that is looked at [px]: 0.5 is seen at the outline, 0.2 only costs time.
+pub(crate) const ERROR: f32 = 0.35;
 
 /// How finely to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,10 +62,10 @@ impl Level {
         self.tube * STEPS as usize + self.steps as usize
     }
 
-    /// The level for `spans` spans of yarn of a radius and a length of spans [px].
-    pub fn of(radius: f32, span: f32, spans: u32) -> Self {
+    /// The level for `spans` spans of yarn of a radius and a length of spans, which may lie beside the spline by `error` [px].
+    pub fn of(radius: f32, span: f32, spans: u32, error: f32) -> Self {
         let tube = TUBE_RADII.iter().filter(|&&limit| radius > limit).count();
-        let chord = 4.0 * (ERROR * radius.max(0.5)).sqrt();
+        let chord = 4.0 * (error * radius.max(0.5)).sqrt();
         // Where a curve ends a step must not go beyond it.
         let merged = spans.trailing_zeros().min(MERGED) as f32;
         let steps = (span / chord).log2().round().clamp(-merged, SAMPLES.ilog2() as f32);
@@ -137,12 +137,13 @@ pub(crate) struct Batch {
 }
 
 /// Chooses levels: `scale` says how many pixels a metre covers at the nearest point of a sphere, or `None` if the sphere
-/// is not in the picture. Batches come coarse to fine, runs of neighbouring chunks of one level as one.
-pub(crate) fn batches(chunks: &[Chunk], scale: impl Fn(Vec3, f32) -> Option<f32>) -> Vec<Batch> {
+/// is not in the picture; yarn may lie beside its spline by `error` [px]. Batches come coarse to fine, runs of neighbouring chunks of
+/// one level as one.
+pub(crate) fn batches(chunks: &[Chunk], error: f32, scale: impl Fn(Vec3, f32) -> Option<f32>) -> Vec<Batch> {
     let mut out: Vec<Batch> = Vec::new();
     for chunk in chunks {
         let Some(pixels) = scale(chunk.center, chunk.reach) else { continue };
-        let level = Level::of(chunk.radius * pixels, chunk.span * pixels, chunk.spans);
+        let level = Level::of(chunk.radius * pixels, chunk.span * pixels, chunk.spans, error);
         let end = chunk.first + chunk.spans;
         match out.last_mut() {
             Some(last) if last.level == level && last.end == chunk.first && end - last.first <= RUN => {
@@ -168,14 +169,20 @@ mod tests {
     fn yarn_gets_finer_as_it_comes_nearer() {
         let counts: Vec<_> = (0..12)
             .map(|i| 0.15 * f32::powi(2.0, i))
-            .map(|radius| Level::of(radius, 2.0 * radius, 32).indices(32) / 3)
+            .map(|radius| Level::of(radius, 2.0 * radius, 32, ERROR).indices(32) / 3)
             .collect();
         assert!(counts.is_sorted() && counts[0] == 16 && counts[9] >= 24 * 32, "{counts:?}");
     }
 
     #[test]
+    fn yarn_that_may_lie_further_beside_its_spline_takes_fewer_steps() {
+        let steps = |error| Level::of(0.5, 2.0, 32, error).indices(32) / 6;
+        assert_eq!([ERROR, 4.0 * ERROR, 16.0 * ERROR].map(steps), [32, 16, 8]);
+    }
+
+    #[test]
     fn a_step_takes_in_no_more_spans_than_there_are() {
-        let steps = |spans: u32| Level::of(0.1, 0.1, spans).indices(spans) / 6;
+        let steps = |spans: u32| Level::of(0.1, 0.1, spans, ERROR).indices(spans) / 6;
         assert_eq!([1, 2, 3, 4, 6, 32, 31].map(steps), [1, 1, 3, 1, 3, 8, 31]);
     }
 
@@ -206,7 +213,7 @@ mod tests {
             span: 2.0,
         };
         let chunks = [1, 11, 21, 31, 45].map(chunk);
-        let drawn = batches(&chunks, |center, _| (center.x != 21.0).then_some(2.0));
+        let drawn = batches(&chunks, ERROR, |center, _| (center.x != 21.0).then_some(2.0));
         let ranges: Vec<_> = drawn.iter().map(|batch| (batch.first, batch.end)).collect();
         assert_eq!(ranges, [(1, 21), (31, 41), (45, 55)]);
     }
