@@ -14,7 +14,7 @@
 //! screen (a viewport's picture is shown by the window) and into image files ([`render_image`]).
 //!
 //! A software adapter takes about as long as there are pixels. Where [`Gpu::is_software`], a window stays fluent by drawing
-//! into a viewport of half the width and height while something moves, and of full size when it has come to rest.
+//! into a viewport of half the width and height, and roughly, while something moves, and of full size when it has come to rest.
 
 mod camera;
 mod compose;

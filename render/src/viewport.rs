@@ -10,7 +10,7 @@ use crate::{Gpu, RenderError, Renderer};
 #[derive(Debug)]
 pub struct Viewport {
     size: [u32; 2],
-    /// Whether its pictures are replaced at once.
+    /// Whether pictures are drawn cheaply, as the next replaces them soon.
     pub(crate) rough: bool,
     picture: wgpu::Texture,
     view: wgpu::TextureView,
@@ -85,7 +85,8 @@ impl Viewport {
         Ok(changed)
     }
 
-    /// Lets pictures that are replaced at once cost less, by what is not looked at there.
+    /// Whether to draw pictures cheaply from now on, as the next replaces them soon: where yarn is thin, with longer steps along it and
+    /// without hollows.
     pub fn set_rough(&mut self, rough: bool) {
         self.rough = rough;
     }

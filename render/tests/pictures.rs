@@ -189,8 +189,8 @@ fn a_rough_picture_shows_the_same_with_less_where_yarn_is_thin() {
     let yarn = stockinette(63, 63);
     scene.set_yarn(gpu(), &YarnLayout::of(&yarn)).unwrap();
     let bounds = Drawing { yarn, ..Default::default() }.bounds().unwrap();
-    // With a yarn of half a pixel, and with one of three.
-    for (zoom, is_thin) in [(2.0, true), (8.0, false)] {
+    // With yarn of half a pixel, and of three, of which hollows are drawn.
+    for (zoom, most_apart) in [(2.0, 12.0), (8.0, 6.0)] {
         let mut camera = Camera::named(NamedView::Front, bounds, 4.0 / 3.0);
         camera.zoom(zoom);
         let [fine, rough] = [false, true].map(|rough| {
@@ -207,8 +207,8 @@ fn a_rough_picture_shows_the_same_with_less_where_yarn_is_thin() {
             both.map(|(a, b)| of(f64::from(*a), f64::from(*b))).sum::<f64>() / fine.as_raw().len() as f64
         };
         let (apart, lighter) = (mean(&|a, b| (a - b).abs()), mean(&|_, b| b) / mean(&|a, _| a));
-        assert_eq!(apart > 0.0, is_thin, "at {zoom}");
-        assert!(apart < 12.0 && (0.95..1.07).contains(&lighter), "{apart} {lighter} at {zoom}");
+        assert!(zoom > 2.0 || apart > 1.0, "{apart} at {zoom}");
+        assert!(apart < most_apart && (0.95..1.07).contains(&lighter), "{apart} {lighter} at {zoom}");
     }
 }
 

@@ -403,13 +403,10 @@ mod tests {
         gradients::solve(&system.matrix, &mut factor, nodes, &system.rhs, &mut solution, exactly).unwrap();
         let matrix = &system.matrix;
         let mut product = vec![0.0; solution.len()];
-        for j in 0..solution.len() {
-            for k in matrix.column[j] as usize..matrix.column[j + 1] as usize {
-                let i = matrix.row[k] as usize;
-                product[i] += matrix.value[k] * solution[j];
-                if i != j {
-                    product[j] += matrix.value[k] * solution[i];
-                }
+        for (i, j, value) in matrix.entries() {
+            product[i] += value * solution[j];
+            if i != j {
+                product[j] += value * solution[i];
             }
         }
         let largest = system.rhs.iter().fold(0.0, |m: f64, f| m.max(f.abs()));

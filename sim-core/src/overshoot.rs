@@ -16,12 +16,15 @@
 //! # Practice
 //! All segments at once, again and again, each by a part of what it has too much (Jacobi): the order of segments does not matter,
 //! and the kernels on the GPU do the same. The sweater of 3 000 loops falling on its mannequin, h = 1/60 s: stretch 0.4 … 1.5 % where
-//! it was 2 … 11 %, and fewer steps that are taken again. What is drawn back goes on to the neighbours, a segment a sweep: in a sweater of
-//! 55 400 loops that lands on shoulders in a step of 1/36 s, 1 100 segments come out more than 2 % too long with 12 sweeps, 30 with 40, none
-//! with 100. But the more is drawn back in a step, the faster it moves in the next: in the frames after that 100 and 300 sweeps leave as much
-//! as 40, and make some steps need braces. (Sweeps with momentum, 0.8 of the last one's, go further and oscillate: steps had to be taken again.
-//! Letting a segment keep half of its yarn in the same manner, where it would
-//! lose more, does not help: the next step finds it overstretched and fails.)
+//! it was 2 … 11 %, and fewer steps that are taken again.
+//!
+//! What is drawn back goes on to the neighbours, a segment a sweep: in a sweater of 55 400 loops that lands on shoulders in a step of
+//! 1/36 s, 1 100 segments come out more than 2 % too long with 12 sweeps, 30 with 40, none with 100. But the more is drawn back in a
+//! step, the faster it moves in the next: in the frames after that 100 and 300 sweeps leave as much as 40, and make some steps need braces.
+//!
+//! What does not help: sweeps with momentum, 0.8 of the last one's, go further and oscillate, so that steps have to be taken again.
+//! Letting a segment keep half of its yarn in the same manner, where it would lose more: the next step finds it overstretched and
+//! fails.
 
 use crate::model::Model;
 use glam::DVec3;
@@ -54,12 +57,12 @@ pub(crate) fn draw_back(model: &Model, masses: &[f64], state: &YarnState, next: 
     let reckoned: Vec<f64> = (0..model.segments.len()).map(|i| reckoned(ends(i))).collect();
     let count = next.position.len();
     let (mut shift, mut add) = (vec![DVec3::ZERO; count], vec![DVec3::ZERO; count]);
-    // Nodes that the last sweep has moved: between two that it has not is nothing new.
-    let mut moved = vec![true; count];
+    // Nodes that the last sweep has drawn at: between two others is nothing new.
+    let (mut drawn, mut draws) = (vec![true; count], vec![false; count]);
     for _ in 0..SWEEPS {
         for (i, reckoned) in reckoned.iter().enumerate() {
             let [a, b] = ends(i);
-            if !(moved[a] || moved[b]) {
+            if !(drawn[a] || drawn[b]) {
                 continue;
             }
             let r = next.position[b] + shift[b] - next.position[a] - shift[a];
@@ -68,13 +71,13 @@ pub(crate) fn draw_back(model: &Model, masses: &[f64], state: &YarnState, next: 
                 let by = PART * (length - reckoned) / length / (masses[a] + masses[b]) * r;
                 add[a] += masses[b] * by;
                 add[b] -= masses[a] * by;
+                (draws[a], draws[b]) = (true, true);
             }
         }
-        for ((shift, add), moved) in shift.iter_mut().zip(&mut add).zip(&mut moved) {
-            *moved = *add != DVec3::ZERO;
-            *shift += std::mem::take(add);
-        }
-        if !moved.contains(&true) {
+        shift.iter_mut().zip(&mut add).for_each(|(shift, add)| *shift += std::mem::take(add));
+        std::mem::swap(&mut drawn, &mut draws);
+        draws.fill(false);
+        if !drawn.contains(&true) {
             break;
         }
     }

@@ -17,8 +17,8 @@ pub struct Screen {
     viewport: Viewport,
     scene: Scene,
     pasted: Pasted,
-    /// What the picture was drawn for.
-    drawn: Option<([u32; 2], Camera)>,
+    /// What the picture was drawn for: its size, the camera, and whether it is rough.
+    drawn: Option<([u32; 2], Camera, bool)>,
 }
 
 impl Screen {
@@ -101,7 +101,7 @@ impl Screen {
         if self.viewport.resize(&self.gpu, &self.renderer, size)? {
             self.pasted = self.paste.of(&self.gpu, self.viewport.view());
         }
-        let wanted = Some((size, *camera));
+        let wanted = Some((size, *camera, rough));
         if self.drawn != wanted || !self.scene.is_settled() {
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             if self.drawn == wanted {

@@ -234,7 +234,7 @@ fn what_has_no_solution_has_none_either_way() {
 
 #[test]
 fn same_bits_on_one_thread_and_on_two() {
-    let go = |threads: usize| {
+    let go = |method: Method, threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             // Large enough that assembly, products and factorisation are shared out.
@@ -242,10 +242,12 @@ fn same_bits_on_one_thread_and_on_two() {
             assert!(model.dof_count() > super::factor::ALONE && model.net.nodes.len() > 8192);
             let state = model.net.laid_state();
             let material = Material::for_loop_width(3e-3);
-            let mut stepper = Stepper::new(model, &material.into(), Some(Method::Iterative));
+            let mut stepper = Stepper::new(model, &material.into(), Some(method));
             let anchors = Anchors::at(&stepper.stacks, &state.sliding);
             stepper.step(&Stuck { state, anchors }, &Scene::default(), 0.0, 1e-3).unwrap().state
         })
     };
-    assert_eq!(go(1), go(2));
+    for method in [Method::Iterative, Method::Direct] {
+        assert_eq!(go(method, 1), go(method, 2), "{method:?}");
+    }
 }

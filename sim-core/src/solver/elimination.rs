@@ -2,10 +2,9 @@
 //!
 //! # Theory
 //! A front is opened, with what the matrix has there, when something is first taken away from it, and given up when its own group has
-//! been eliminated and packed (Duff and Reid, *The Multifrontal Solution of Indefinite Sparse Symmetric Linear*, which keep what
-//! children hand on; here it is taken from the later fronts at once). With nested dissection those that are open are separators
-//! around what is being eliminated, a part of the factor that falls with its size; with groups that go through the fabric like a wave they
-//! are its crest.
+//! been eliminated and packed. (Duff and Reid, *The Multifrontal Solution of Indefinite Sparse Symmetric Linear Equations*, keep what
+//! children hand on; here it is taken from later fronts at once.) With nested dissection the open fronts are the separators around what is
+//! being eliminated, of large fabrics a small part of the factor; where elimination goes through the fabric like a wave they are its crest.
 //!
 //! # Practice
 //! All fronts together, in single precision, would take twice the memory of the packed factor.
@@ -21,7 +20,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use std::ops::Range;
 use triangular::BlockStructure::{Rectangular, TriangularLower};
 
-/// The fronts of neighbouring groups, of which some are open.
+/// The fronts of consecutive groups, of which some are open.
 pub(crate) struct Fronts {
     /// The first group.
     first: usize,
@@ -36,7 +35,7 @@ impl Fronts {
     }
 
     /// The front of a group, opened with what it begins with if it is not.
-    fn of(&mut self, group: usize, begin: impl FnOnce() -> Vec<f32>) -> &mut Vec<f32> {
+    fn opened(&mut self, group: usize, begin: impl FnOnce() -> Vec<f32>) -> &mut Vec<f32> {
         let front = &mut self.open[group - self.first];
         if front.is_empty() {
             *front = begin();
@@ -47,7 +46,7 @@ impl Fronts {
     /// Adds what was done to the same fronts elsewhere.
     pub fn add(&mut self, changes: Self, begin: impl Fn(usize) -> Vec<f32>) {
         for (group, change) in (self.first..).zip(changes.open).filter(|(_, change)| !change.is_empty()) {
-            self.of(group, || begin(group)).iter_mut().zip(change).for_each(|(x, change)| *x += change);
+            self.opened(group, || begin(group)).iter_mut().zip(change).for_each(|(x, change)| *x += change);
         }
     }
 }
@@ -105,7 +104,7 @@ impl Elimination<'_> {
         for number in part.groups.clone() {
             let group = &groups[number];
             let (n, m) = (group.unknowns.len(), group.rows.len());
-            let mut front = std::mem::take(fronts.of(number, || self.filled(number)));
+            let mut front = std::mem::take(fronts.opened(number, || self.filled(number)));
             inverse.resize(n * n, 0.0);
             panel::eliminate(&mut front, &mut inverse, n).map_err(|_| NoFactor)?;
             let scale = &mut packs.columns[group.unknowns.start - part.unknowns.start..][..n];
@@ -124,8 +123,8 @@ impl Elimination<'_> {
                     let number = change.group as usize;
                     let later = &groups[number];
                     let front = match part.groups.contains(&number) {
-                        true => fronts.of(number, || self.filled(number)),
-                        false => joint.of(number, || vec![0.0; later.unknowns.len() * later.height()]),
+                        true => fronts.opened(number, || self.filled(number)),
+                        false => joint.opened(number, || vec![0.0; later.unknowns.len() * later.height()]),
                     };
                     if change.in_place {
                         change.work_out(below, beside, &group.rows, later, front);

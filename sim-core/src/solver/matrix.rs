@@ -16,8 +16,6 @@ pub(crate) struct BlockMatrix {
     pub start: Vec<u32>,
     /// First entry of each column, [dof_count + 1].
     pub column: Vec<u32>,
-    /// Row of each entry.
-    pub row: Vec<u32>,
     /// Each entry.
     pub value: Vec<f64>,
     /// Blocks outside of the pattern.
@@ -36,7 +34,6 @@ impl BlockMatrix {
         let start = model.start.clone();
         let mut matrix = Self {
             column: vec![0],
-            row: Vec::new(),
             value: Vec::new(),
             tail: Vec::new(),
             first_block: vec![0],
@@ -44,6 +41,7 @@ impl BlockMatrix {
             block_offset: Vec::new(),
             start,
         };
+        let mut count = 0;
         for (node, rows) in model.neighbours.iter().enumerate() {
             let mut offset = 0;
             for &below in rows {
@@ -52,15 +50,13 @@ impl BlockMatrix {
                 offset += matrix.size(below as usize);
             }
             matrix.first_block.push(matrix.block_node.len() as u32);
-            for first_row in matrix.start[node]..matrix.start[node + 1] {
-                matrix.row.extend(first_row..matrix.start[node + 1]);
-                for &below in &rows[1..] {
-                    matrix.row.extend(matrix.start[below as usize]..matrix.start[below as usize + 1]);
-                }
-                matrix.column.push(matrix.row.len() as u32);
+            // The rows of all blocks, in each further column one less.
+            for above in 0..matrix.size(node) {
+                count += offset - above;
+                matrix.column.push(count);
             }
         }
-        matrix.value = vec![0.0; matrix.row.len()];
+        matrix.value = vec![0.0; count as usize];
         matrix
     }
 
@@ -100,12 +96,11 @@ impl BlockMatrix {
     pub fn translated(&self) -> DMat3 {
         let mut sum = DMat3::ZERO;
         for node in 0..self.start.len() - 1 {
-            let blocks = self.first_block[node] as usize..self.first_block[node + 1] as usize;
             for j in 0..3 {
-                for (k, offset) in self.block_offset[blocks.clone()].iter().enumerate() {
+                for (k, (_, offset)) in self.blocks(node).enumerate() {
                     // What lies below the diagonal counts for what lies above it too.
                     for i in if k == 0 { j } else { 0 }..3 {
-                        let entry = self.value[self.place(self.start[node], *offset, i as u32, j as u32)];
+                        let entry = self.value[self.place(self.start[node], offset, i as u32, j as u32)];
                         sum.col_mut(j)[i] += entry;
                         if k > 0 || i > j {
                             sum.col_mut(i)[j] += entry;
@@ -117,6 +112,21 @@ impl BlockMatrix {
         // Of a contact the diagonal blocks are in the sum, and should not be: it resists no common motion.
         self.tail.iter().for_each(|link| sum -= 2.0 * link.block);
         sum
+    }
+
+    /// Row, column and value of each entry of the pattern.
+    #[cfg(test)]
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let columns = (0..self.start.len() - 1).flat_map(move |node| {
+            (0..self.size(node)).flat_map(move |j| self.blocks(node).map(move |block| (node, j, block)))
+        });
+        columns.flat_map(move |(node, j, (row, offset))| {
+            let first = if row as usize == node { j } else { 0 };
+            (first..self.size(row as usize)).map(move |i| {
+                let at = [self.start[row as usize] + i, self.start[node] + j].map(|unknown| unknown as usize);
+                (at[0], at[1], self.value[self.place(self.start[node], offset, i, j)])
+            })
+        })
     }
 
     /// Adds to a diagonal entry.

@@ -5,7 +5,8 @@
 //! time in proportion to n and to their iterations, which are few where what makes the system hard is local: axial stretch. Garments
 //! that move freely in long steps have slow motions of large parts too, and iterations then grow as the root of n. So conjugate
 //! gradients begin, and where they took longer than a complete factorisation would have, that solves the next systems. What
-//! both take is reckoned in operations and bytes, not timed, so that every machine takes the same way.
+//! both take is reckoned in operations and bytes, not timed, so that every machine takes the same way, as long as it has room in
+//! memory (`room.rs`).
 //!
 //! # Practice
 //! A step in all at h = 5 ms, on one core:
@@ -22,10 +23,13 @@
 //!   fabric, tubes and increases: 9 … 20 iterations to 1e-4, as many at any size.
 //! - Without fill, IC(0), there are blocks that are not positive definite even in stockinette, and 52 … 300 iterations (of
 //!   24 with one level of fill, to 1e-6). Stacks of three and gathered rows stay hard with one level: 46 … 48.
+//! - Hanging stockinette of 1 000, 3 200, 10 600, 32 400, 102 000 and 325 000 loops, h = 5 ms, two cores: 12, 16, 17, 18, 18, 24 iterations, and
+//!   36, 34, 40, 40, 42, 53 ms for each 1 000 loops (`purlwise bench growth`): a loop costs 1.45 times as much at last. 1 000 loops are
+//!   left to one core, so of processor time a loop takes 2.5 times as much as those, and 1.7 times as much as one of 3 200.
 //! - Most of the time of an iteration is that of reading the factor, 5.5 KB a loop and direction, and the matrix, 4.4 KB.
 //! - The complete factor of a sweater of 10 400 loops takes 0.37 s on two cores and that of 57 000 3.4 … 4.6 s, at 110 … 160 Gflop/s; the
 //!   tail of contacts between layers leaves some 8 iterations to it. The incomplete one took 35 … 55 and 69 … 220 iterations there
-//!   at h = 1/60 s.
+//!   at h = 1/60 s. That of a t-shirt of 100 000 loops takes 11 s, that of 327 000 T325.
 //! - The smallest eigenvalues of what is left after the incomplete factorisation are many, not a few: 0.05 … 0.2 at 3 000 loops, 0.01 … 0.1
 //!   at 10 400, without a gap. Deflation by 32 … 64 Ritz vectors of earlier steps makes 13 iterations of 20, and costs what that saves.
 //!   The best coarse space of translations of patches of 250 loops there is, of least energy, makes 23 of 43; relaxed by three and six
@@ -119,6 +123,8 @@ pub(crate) struct Solver {
     complete: Option<Factor>,
     /// Whether the complete one is used as soon as it is the faster, and not only where the other fails.
     adapts: bool,
+    /// Whether there is room in memory for the complete one.
+    has_room: bool,
     /// Systems to go before the incomplete factorisation is tried again.
     direct_for: u32,
     /// What that number will be when the incomplete factorisation is the slower next.
@@ -151,19 +157,21 @@ impl Solver {
             incomplete: None,
             complete: Some(complete),
             adapts: false,
+            has_room: true,
             direct_for: 0,
             direct_after: DIRECT_AFTER,
             last: Method::Direct,
         }
     }
 
-    /// Solves by an incomplete factorisation, and where that fails by a complete one if the system is not too large.
+    /// Solves by an incomplete factorisation, and where that fails by a complete one if there is room for that.
     pub fn iterative(model: &Model, matrix: &BlockMatrix) -> Self {
         let incomplete = Factor::new(Pattern::incomplete(model, matrix));
         Self {
             incomplete: Some(incomplete),
             complete: None,
             adapts: false,
+            has_room: room::is_there_for(model.net.nodes.len()),
             direct_for: 0,
             direct_after: DIRECT_AFTER,
             last: Method::Iterative,
@@ -208,25 +216,26 @@ impl Solver {
         if self.direct_for > 0 {
             self.direct_for -= 1;
         } else if let Some(incomplete) = &mut self.incomplete {
-            let alone = self.complete.is_none() && !room::is_there_for(model.net.nodes.len());
             let as_fast = iterations_as_fast(model, matrix, incomplete);
-            let most = match (alone, self.adapts) {
-                (true, _) => MOST_ITERATIONS_ALONE,
+            let in_vain_before = self.direct_after > DIRECT_AFTER;
+            let most = match (self.has_room, self.adapts) {
+                (false, _) => MOST_ITERATIONS_ALONE,
+                (true, true) if in_vain_before => as_fast,
                 // By then it has cost as much again as the better way would have.
-                (false, true) => 2 * as_fast,
-                (false, false) => MOST_ITERATIONS,
+                (true, true) => 2 * as_fast,
+                (true, false) => MOST_ITERATIONS,
             };
             let before = costs.iterations;
             let solved = factorised(incomplete, matrix, costs)
                 .and_then(|factor| iterate(matrix, factor, nodes, rhs, x, most, costs));
             let slow = self.adapts && costs.iterations - before > as_fast as u64;
-            if !alone && (slow || solved.is_err()) {
+            if self.has_room && (slow || solved.is_err()) {
                 self.direct_for = self.direct_after;
                 self.direct_after = (2 * self.direct_after).min(MOST_DIRECT_AFTER);
             } else {
                 self.direct_after = DIRECT_AFTER;
             }
-            if alone || solved.is_ok() {
+            if !self.has_room || solved.is_ok() {
                 self.last = Method::Iterative;
                 return solved;
             }

@@ -31,7 +31,7 @@ pub(crate) fn eliminate(front: &mut [f32], inverse: &mut [f32], n: usize) -> Res
     for first in (0..n).step_by(BLOCK) {
         let width = BLOCK.min(n - first);
         let (done, behind) = front[first * height..].split_at_mut(width * height);
-        pulp::Arch::new().dispatch(Elimination { columns: done, height, first })?;
+        pulp::Arch::new().dispatch(Columns { columns: done, height, first })?;
         if !behind.is_empty() {
             let (start, count) = (first + width, n - first - width);
             let done = MatRef::from_column_major_slice(done, height, width).submatrix(
@@ -54,13 +54,13 @@ pub(crate) fn eliminate(front: &mut [f32], inverse: &mut [f32], n: usize) -> Res
 }
 
 /// Eliminates columns of a front from which those before are taken away, the first being number `first` in the front.
-struct Elimination<'a> {
+struct Columns<'a> {
     columns: &'a mut [f32],
     height: usize,
     first: usize,
 }
 
-impl pulp::WithSimd for Elimination<'_> {
+impl pulp::WithSimd for Columns<'_> {
     type Output = Result<(), NotPositive>;
 
     #[inline(always)]

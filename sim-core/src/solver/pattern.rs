@@ -231,25 +231,28 @@ impl Order {
         for column in 0..self.start.len() as u32 {
             for (row, offset) in matrix.blocks(column as usize) {
                 let nodes = [row, column];
-                let number =
-                    nodes.map(|n| self.group_of_node[n as usize]).into_iter().min().unwrap_or_default();
+                let [a, b] = nodes.map(|n| self.group_of_node[n as usize]);
+                let number = a.min(b);
                 let group = &groups[number as usize];
                 let place = |node: u32| {
                     let start = self.start[node as usize];
                     match (start as usize).checked_sub(group.unknowns.start) {
                         Some(own) if own < group.unknowns.len() => own,
-                        _ => group.unknowns.len() + group.rows.partition_point(|row| *row < start),
+                        _ => {
+                            let at = group.rows.partition_point(|row| *row < start);
+                            debug_assert_eq!(group.rows.get(at), Some(&start));
+                            group.unknowns.len() + at
+                        }
                     }
                 };
                 blocks.push((number, Block { nodes, offset, at: nodes.map(|n| place(n) as u32) }));
             }
         }
         blocks.sort_by_key(|(group, _)| *group);
-        let mut rest = &blocks[..];
-        for (number, group) in groups.iter_mut().enumerate() {
-            let (own, others) = rest.split_at(rest.partition_point(|(g, _)| *g as usize == number));
-            let first = blocks.len() - rest.len();
-            (group.blocks, rest) = (first..first + own.len(), others);
+        let mut end = 0;
+        for own in blocks.chunk_by(|(a, _), (b, _)| a == b) {
+            groups[own[0].0 as usize].blocks = end..end + own.len();
+            end += own.len();
         }
         blocks.into_iter().map(|(_, block)| block).collect()
     }

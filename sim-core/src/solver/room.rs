@@ -6,7 +6,7 @@
 use super::dissection;
 use sysinfo::{CGroupLimits, MemoryRefreshKind, System};
 
-/// A factor of so little room is not asked for [bytes].
+/// For less than this nobody asks what is free [bytes].
 const LITTLE: f64 = 256e6;
 
 /// What is counted on where the system does not tell [bytes].
@@ -24,7 +24,7 @@ pub(crate) fn is_there_for(nodes: usize) -> bool {
     wanted < free_memory().unwrap_or(UNTOLD)
 }
 
-/// Memory that is free, for this process and in all, where the system tells [bytes].
+/// Memory that is free, in this container and in all, where the system tells [bytes].
 fn free_memory() -> Option<f64> {
     let mut system = System::new().ok()?;
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());

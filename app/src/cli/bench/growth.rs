@@ -14,8 +14,10 @@ use sim_core::{SharedGpu, SolverChoice};
 const SIDES: [usize; 6] = [32, 57, 103, 180, 320, 570];
 /// Time step [s].
 const STEP: f64 = 5e-3;
-/// Steps before those that are measured, in which yarn that was just laid finds its first shape, and those.
-const STEPS: [u64; 2] = [8, 12];
+/// Steps before those that are measured, in which yarn that was just laid finds its first shape.
+const BEFORE: u64 = 8;
+/// Steps that are measured.
+const STEPS: u64 = 12;
 
 /// Hangs stockinette of at most so many loops by its last row and measures.
 pub fn run(most_loops: usize, solver: SolverChoice, print: Output) -> Result<()> {
@@ -23,7 +25,7 @@ pub fn run(most_loops: usize, solver: SolverChoice, print: Output) -> Result<()>
     let mut runs = Vec::new();
     let mut first = None;
     for side in SIDES.into_iter().filter(|side| side * side <= most_loops) {
-        let measured = Hanging::new(side)?.steps(&machine, &gpu, solver, STEP, STEPS)?;
+        let measured = Hanging::new(side)?.steps(&machine, &gpu, solver, STEP, [BEFORE, STEPS])?;
         let growth = measured.ms_per_loop() / *first.get_or_insert(measured.ms_per_loop());
         print.tell(&format!("{}\n  a loop costs {growth:.2} times as much as at first", measured.text()));
         let mut run = columns(&measured, STEP);

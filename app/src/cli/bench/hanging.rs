@@ -34,7 +34,7 @@ impl Hanging {
         Ok(Self { side, net, pins })
     }
 
-    /// Lets it hang for so many steps [s] and then measures some more.
+    /// Lets it hang for so many steps of a length [s] and then measures some more.
     pub fn steps(
         &self,
         machine: &Machine,

@@ -160,12 +160,9 @@ impl Pair {
     fn unlike_matrix(&self) -> f64 {
         let matrix = &self.stepper.system.matrix;
         let mut entries = HashMap::new();
-        for j in 0..matrix.dof_count() {
-            for k in matrix.column[j] as usize..matrix.column[j + 1] as usize {
-                let i = matrix.row[k] as usize;
-                entries.insert((i, j), matrix.value[k]);
-                entries.insert((j, i), matrix.value[k]);
-            }
+        for (i, j, value) in matrix.entries() {
+            entries.insert((i, j), value);
+            entries.insert((j, i), value);
         }
         let (dofs, tables) = (self.dofs(), &self.gpu.system().tables);
         let mut differences = Vec::with_capacity(entries.len());
