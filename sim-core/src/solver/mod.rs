@@ -29,7 +29,7 @@
 //! - Most of the time of an iteration is that of reading the factor, 5.5 KB a loop and direction, and the matrix, 4.4 KB.
 //! - The complete factor of a sweater of 10 400 loops takes 0.37 s on two cores and that of 57 000 3.4 … 4.6 s, at 110 … 160 Gflop/s; the
 //!   tail of contacts between layers leaves some 8 iterations to it. The incomplete one took 35 … 55 and 69 … 220 iterations there
-//!   at h = 1/60 s. That of a t-shirt of 100 000 loops takes 11 s, that of 327 000 T325.
+//!   at h = 1/60 s. That of a t-shirt of 100 000 loops takes 11 s, that of 327 000 63 s.
 //! - The smallest eigenvalues of what is left after the incomplete factorisation are many, not a few: 0.05 … 0.2 at 3 000 loops, 0.01 … 0.1
 //!   at 10 400, without a gap. Deflation by 32 … 64 Ritz vectors of earlier steps makes 13 iterations of 20, and costs what that saves.
 //!   The best coarse space of translations of patches of 250 loops there is, of least energy, makes 23 of 43; relaxed by three and six
