@@ -153,8 +153,8 @@ impl Renderer {
         let frustum = scene.bounds().filter(|_| self.shadows);
         let frustum = frustum.map(|bounds| ShadowFrustum::new(bounds, camera, size.x / size.y, lights.key));
         let hollows = scene.yarn.radius() * OCCLUSION_REACH;
-        let fine = viewport.rough && hollows * self.scale(camera, size) < LEAST_ROUGH_HOLLOW;
-        let hollows = if fine { 0.0 } else { hollows };
+        let left_out = viewport.rough && hollows * self.scale(camera, size) < LEAST_ROUGH_HOLLOW;
+        let hollows = if left_out { 0.0 } else { hollows };
         let frame = Frame {
             supersampling: self.supersampling as f32,
             ..frame(camera, size, &lights, frustum.as_ref(), hollows)

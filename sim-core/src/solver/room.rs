@@ -6,7 +6,7 @@
 use super::dissection;
 use sysinfo::{CGroupLimits, MemoryRefreshKind, System};
 
-/// For less than this nobody asks what is free [bytes].
+/// There is always room for this much; what is free is not asked [bytes].
 const LITTLE: f64 = 256e6;
 
 /// What is counted on where the system does not tell [bytes].
@@ -42,7 +42,7 @@ mod tests {
     fn a_swatch_fits_and_the_fabric_of_a_city_does_not() {
         assert!(is_there_for(1_000));
         assert!(free_memory().is_none_or(|free| free > 1e6), "{:?}", free_memory());
-        // 10 TB.
+        // Some 20 TB.
         assert!(!is_there_for(1_000_000_000));
     }
 }
