@@ -180,8 +180,7 @@ impl Stepper {
         }
         let mut next = advanced(state, velocity, rate, h);
         let forces = body_forces(scene, &touching, &next.velocity, h);
-        let firm: Vec<f64> = self.masses.iter().zip(&self.held).map(|(mass, held)| mass + held).collect();
-        draw_back(&self.model, &firm, state, &mut next, h);
+        draw_back(&self.model, (&self.masses, &self.held), state, &mut next, h);
         watch.lap(&mut self.costs, Stage::Rest);
         Ok((Stuck { state: next, anchors }, forces))
     }

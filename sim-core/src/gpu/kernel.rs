@@ -42,7 +42,7 @@ pub(crate) const SOURCES: &[Source] = &[
         &["held_span", "translate_span", "translate", "settle"],
     ),
     ("advance", include_str!("kernels/advance.wgsl"), &["advance"]),
-    ("overshoot", include_str!("kernels/overshoot.wgsl"), &["draw_back"]),
+    ("overshoot", include_str!("kernels/overshoot.wgsl"), &["draw_back", "draw_far_back"]),
     ("come_back", include_str!("kernels/come_back.wgsl"), &["come_back"]),
     ("judge", include_str!("kernels/judge.wgsl"), &["judge"]),
     ("commit", include_str!("kernels/commit.wgsl"), &["commit"]),

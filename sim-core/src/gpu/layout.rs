@@ -372,7 +372,7 @@ pub(crate) fn prelude() -> String {
 }
 
 /// Constants of the physics.
-fn floats() -> [(&'static str, f64); 15] {
+fn floats() -> [(&'static str, f64); 17] {
     [
         ("LEAST_LENGTH", local::LEAST_LENGTH),
         ("BEND_JAM_FACTOR", bend::JAM_FACTOR),
@@ -382,7 +382,9 @@ fn floats() -> [(&'static str, f64); 15] {
         ("NEAREST", layers::NEAREST),
         ("FARTHEST", layers::FARTHEST),
         ("LEAP", step::LEAP),
-        ("DRAWN_LEFT", overshoot::LEFT),
+        ("DRAWN_LEFT", overshoot::LEFT[0]),
+        ("DRAWN_FAR_LEFT", overshoot::LEFT[1]),
+        ("DRAWN_HEAVIEST", overshoot::HEAVIEST),
         ("DRAWN_PART", overshoot::PART),
         ("DRAWN_LEAST", overshoot::LEAST),
         ("MOST_DRAG", crate::body_contact::MOST_DRAG),

@@ -144,12 +144,14 @@ impl Stages {
         ];
         let mut finish = vec![all("advance", wide_nodes)?];
         const { assert!(SWEEPS.is_multiple_of(2), "the last sweep writes where the first reads") };
-        for sweep in 0..SWEEPS {
+        for (round, sweep) in
+            ["draw_back", "draw_far_back"].into_iter().flat_map(|r| (0..SWEEPS).map(move |s| (r, s)))
+        {
             let aliases: &[_] =
                 if sweep % 2 == 0 { &[] } else { &[("back", "back_next"), ("back_next", "back")] };
             for (c, chunk) in tables.chunks.iter().enumerate() {
                 let workgroups = chunk.counts.node_count.div_ceil(WIDE);
-                finish.push(maker.task("draw_back", Some(c), workgroups, None, aliases)?);
+                finish.push(maker.task(round, Some(c), workgroups, None, aliases)?);
             }
         }
         finish.push(all("come_back", wide_nodes)?);

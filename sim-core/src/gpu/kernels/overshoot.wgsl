@@ -12,30 +12,31 @@
 // Mass of a node with what holds it.
 fn firm(node: u32) -> f32 {
     let h = held[3u * node];
-    return nodes[node].mass + (h.x + h.y + h.z) / 3.0;
+    let mass = nodes[node].mass;
+    return mass + min((h.x + h.y + h.z) / 3.0, DRAWN_HEAVIEST * mass);
 }
 
 // How far one end is drawn to the other.
-fn drawn(own: u32, other: u32) -> vec3<f32> {
+fn drawn(own: u32, other: u32, left: f32) -> vec3<f32> {
     let r = position[other].xyz - position[own].xyz;
     let moved = (next_position[other].xyz - next_position[own].xyz) - r;
     let before = length(r);
-    let reckoned = (1.0 + DRAWN_LEFT) * max(before + dot(r, moved) / before, DRAWN_LEAST * before);
+    let most = (1.0 + left) * max(before + dot(r, moved) / before, DRAWN_LEAST * before);
     let after = r + moved + (back[other].xyz - back[own].xyz);
     let length = length(after);
-    if length <= reckoned {
+    if length <= most {
         return vec3<f32>(0.0);
     }
     let share = firm(other) / (firm(own) + firm(other));
-    return DRAWN_PART * share * (length - reckoned) / length * after;
+    return DRAWN_PART * share * (length - most) / length * after;
 }
 
-@compute @workgroup_size(WIDE)
-fn draw_back(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= counts.node_count {
+// One sweep at one node.
+fn sweep(index: u32, left: f32) {
+    if index >= counts.node_count {
         return;
     }
-    let own = counts.first_node + id.x;
+    let own = counts.first_node + index;
     let node = nodes[own];
     var sum = back[own].xyz;
     for (var entry = node.entry; entry < node.entry_end; entry += 3u) {
@@ -43,8 +44,20 @@ fn draw_back(@builtin(global_invocation_id) id: vec3<u32>) {
         if (word & 3u) == OF_SEGMENT {
             let term = segments[word >> 4u];
             let is_first = ((word >> 2u) & 3u) == 0u;
-            sum += drawn(own, select(term.node_0, term.node_1, is_first));
+            sum += drawn(own, select(term.node_0, term.node_1, is_first), left);
         }
     }
     back_next[own] = vec4<f32>(sum, 0.0);
+}
+
+// The first round.
+@compute @workgroup_size(WIDE)
+fn draw_back(@builtin(global_invocation_id) id: vec3<u32>) {
+    sweep(id.x, DRAWN_LEFT);
+}
+
+// The second round.
+@compute @workgroup_size(WIDE)
+fn draw_far_back(@builtin(global_invocation_id) id: vec3<u32>) {
+    sweep(id.x, DRAWN_FAR_LEFT);
 }

@@ -27,6 +27,7 @@ fn segment(@builtin(global_invocation_id) id: vec3<u32>) {
     let l = max(sqrt(dot(r, r) + term.climb * term.climb), LEAST_LENGTH);
     let d = r / l;
     let ratio = l / du;
+    let share = max(ratio, 0.5 * (1.0 + ratio));
     let w = r / du;
 
     // Mass: the material at the ends moves with a₀ and a₁.
@@ -48,7 +49,7 @@ fn segment(@builtin(global_invocation_id) id: vec3<u32>) {
     let across = h * h * max(yarn.stretch * (1.0 / du - 1.0 / l), 0.0);
     let apart = v_1 - v_0;
     let slip = u_1.y - u_0.y;
-    let stretching = along * (dot(d, apart) - ratio * slip);
+    let stretching = along * (dot(d, apart) - share * slip);
     let omega = vec3<f32>(rigid.omega_x, rigid.omega_y, rigid.omega_z);
     let spin = across * cross(omega, r);
     let braked_x = stretching * d + across * (apart - d * dot(d, apart));
@@ -71,15 +72,15 @@ fn segment(@builtin(global_invocation_id) id: vec3<u32>) {
         pull = select(0.0, -yarn.parallel * overlap, overlap > 0.0);
         stiffness = select(0.0, yarn.parallel, overlap > 0.0);
     }
-    let slack = yarn.stretch / du * max(0.5 * (1.0 + ratio) / BEYOND - ratio * ratio, 0.0);
+    let slack = yarn.stretch / du * max(share / BEYOND - share * share, 0.0);
     let spacing = h * (h + yarn.stiffness_damping) * stiffness + h * h * slack;
 
     // Impulse on the second end; the opposite on the first.
     let impulse = vec4<f32>(-h * tension * d + spin, h * (weight_u - by_du - pull));
     let both = vec4<f32>(h * weight_x, 0.0);
-    let brake = vec4<f32>(braked_x, -ratio * stretching + spacing * slip);
+    let brake = vec4<f32>(braked_x, -share * stretching + spacing * slip);
     let first = id.x * SEGMENT_OUT;
-    elements[first] = vec4<f32>(d, ratio);
+    elements[first] = vec4<f32>(d, share);
     elements[first + 1u] = vec4<f32>(w, (1.0 + damping) * unit);
     elements[first + 2u] = vec4<f32>(along, across, spacing, tension);
     elements[first + 3u] = both - impulse + momentum_0;

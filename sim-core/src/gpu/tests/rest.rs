@@ -18,10 +18,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
-/// How far nodes may be apart at rest [m]: a fiftieth of a loop's width, and a quarter of what a wrong kernel makes. Most are some
-/// 1e-6 apart, seed 1.8e-5; stacks of three, which fly by 13 mm when they are let go, 1.3e-5; crumpled cloth, which comes to rest
-/// by much more sliding, 3.4e-5. Where it rests hangs on rounding and on the first steps: there were 4e-5 and 6e-5, too.
-const CLOSE: f64 = 6e-5;
+/// How far nodes may be apart at rest [m]: a hundredth of a loop's width, and an eighth of what a wrong kernel makes. Most are some
+/// 1e-6 apart, seed 1.5e-5 and cables 1.7e-5.
+const CLOSE: f64 = 3e-5;
 
 /// When a fabric is at rest.
 const GOAL: SettleGoal = SettleGoal { speed: 1e-3, time_limit_s: 2.0 };
@@ -52,10 +51,18 @@ fn ten_fabrics_come_to_the_same_rest_by_every_solver() {
     let gpu = SharedGpu::from(device);
     for (name, net) in ten_fabrics() {
         let net = Arc::new(net);
+        let begun =
+            |choice, start| Simulation::new(&gpu, choice, &net, calm(), hanging(&net), start).unwrap();
         // Cloth rests as it was laid.
-        let start = if name == "woven" { crumpled(&net) } else { net.laid_state() };
-        let made =
-            |choice| Simulation::new(&gpu, choice, &net, calm(), hanging(&net), start.clone()).unwrap();
+        let laid = if name == "woven" { crumpled(&net) } else { net.laid_state() };
+        // Crumpled cloth and stacks fly apart when they are let go, by 13 mm in two steps. Whether one node runs into another then hangs on
+        // a micrometre, and yarn sticks elsewhere: the CPU alone leaves stacks 0.5 mm apart from starts that are 0.25 µm apart.
+        let mut flown = begun(SolverChoice::Direct, laid.clone());
+        while flown.progress().time_s < 0.1 {
+            flown.step().unwrap();
+        }
+        let start = if ["woven", "stacks"].contains(&name) { flown.state().unwrap().clone() } else { laid };
+        let made = |choice| begun(choice, start.clone());
         let (direct, time_s) = at_rest(name, made(SolverChoice::Direct));
         let moved = apart(&direct, &start);
         assert!(moved > 10.0 * CLOSE, "{name} has hardly moved: {moved:e}");
