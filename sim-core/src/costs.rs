@@ -31,7 +31,7 @@ pub(crate) enum Stage {
     Friction,
     /// Layers, bodies, pins.
     Contacts,
-    /// Factorisation of the matrix.
+    /// Factorisation of the matrix, and before the first complete one its layout.
     Factorisation,
     /// Conjugate gradients.
     Iterations,

@@ -36,6 +36,16 @@ pub struct Facts {
     pub holds: Vec<HoldFact>,
 }
 
+/// Largest strain of a segment.
+pub(crate) fn max_stretch(model: &Model, state: &YarnState) -> f64 {
+    let strain = |term: &SegmentTerm| {
+        let q: [f64; 8] = term.stencil.coordinates(state);
+        let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
+        r.length().hypot(term.climb) / (q[7] - q[3]) - 1.0
+    };
+    model.segments.iter().map(strain).fold(0.0, f64::max)
+}
+
 /// The figures that follow from a state; the others stay empty.
 pub(crate) fn measure(
     model: &Model,
@@ -43,12 +53,6 @@ pub(crate) fn measure(
     (scene, time_s): (&Scene, f64),
     state: &YarnState,
 ) -> Facts {
-    let strain = |term: &SegmentTerm| {
-        let q: [f64; 8] = term.stencil.coordinates(state);
-        let r = crate::local::point(&q, 4) - crate::local::point(&q, 0);
-        r.length().hypot(term.climb) / (q[7] - q[3]) - 1.0
-    };
-    let strains = model.segments.iter().map(strain);
     let bodies: Vec<Placed<'_>> = scene.bodies.iter().map(|b| Placed::new(b, time_s, 0.0)).collect();
     let depth = |(x, clearance): (&DVec3, f64)| {
         let near = bodies.iter().filter(|b| b.is_near([*x, *x], clearance));
@@ -59,7 +63,7 @@ pub(crate) fn measure(
     let radii = drawn.curves.iter().flat_map(|c| &c.radii);
     let thinnest = f64::from(radii.copied().fold(f32::INFINITY, f32::min));
     Facts {
-        max_stretch: strains.fold(0.0, f64::max),
+        max_stretch: max_stretch(model, state),
         min_yarn_distance_over_diameter: least_distance(&drawn) / (2.0 * thinnest),
         max_penetration_mm: 1e3 * deepest,
         ..Facts::default()

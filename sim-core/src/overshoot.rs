@@ -19,23 +19,23 @@
 //! it was 2 … 11 %, and fewer steps that are taken again.
 //!
 //! What is drawn back goes on to the neighbours, a segment a sweep, so no number of sweeps takes off all. And the more is drawn back
-//! in a step, the faster it moves in the next: with 100 and 300 sweeps a sweater that lands on shoulders in steps of 1/30 s has steps that need
-//! braces, and as many segments that are too long in those after. So a second round of sweeps takes only what is far too long.
+//! in a step, the faster it moves in the next: with 100 sweeps a sweater that lands on shoulders in steps of 1/30 s has steps that need
+//! braces. So a second round of sweeps takes only what is far too long.
 //!
 //! A body holds a node by 400 masses of its yarn in steps of 1/30 s. Between two such a light node goes nowhere: a sweep draws it to the
-//! one and back to the other, and the heavy ones move by a 400th. Segments at such nodes were all that came out more than 2 % too long.
+//! one and back to the other, and the heavy ones move by a 400th. Nearly all segments that came out more than 2 % too long were there.
 //! With ten masses they sink 30 µm into a body, and the next step puts them out again.
 //!
-//! Segments more than 2 % too long, worst and how many of 451 709, in the steps in which the sweater of 55 400 loops lands (h = 1/30 s):
+//! Of 451 709 segments of the sweater of 55 400 loops, those more than 2 % too long in ten steps of at most 1/30 s in which it is let go and lands:
 //!
-//! | | worst | segments in each of 10 steps |
-//! |---|---|---|
-//! | 40 sweeps, nodes as heavy as they are held | 18.7 % | 0, 2, 1, 0, 0, 6, 12, 26, 20, 1 |
-//! | 40 sweeps, 10 masses | 3.5 % | 29, 2, 0, 0, 0, 14, 8, 3, 0, 0 |
-//! | 100 sweeps, 10 masses | 2.9 % | 0, 2, 0, 0, 0, 3, 5, 18, 0, 0 |
-//! | 40 and 40 for what is far too long, 10 masses | 2.7 % | 0, 2, 0, 0, 0, 0, 0, 0, 0, 0 |
+//! | sweeps | at most so many masses | segments | worst |
+//! |---|---|---|---|
+//! | 100 | all that hold | 0, 2, 0, 1, 0, 0, 6, 7, 26, 20 | 7.5 % |
+//! | 100 | 10 | 0, 2, 0, 0, 0, 0, 3, 4, 18, 0 | 2.9 % |
+//! | 40 | 10 | 29, 2, 0, 0, 0, 14, 8, 0, 3, 0 | 3.5 % |
+//! | 40 and 40 | 10 | none | 1.8 % |
 //!
-//! The two in the second step are of slack yarn, which `stretch.rs` draws in with less error since.
+//! (The two in the second step were slack, and their stiffness in `stretch.rs` was another one before the last line.)
 //!
 //! What does not help: sweeps with momentum, 0.8 of the last one's, go further and oscillate, so that steps have to be taken again.
 //! Letting a segment keep half of its yarn in the same manner, where it would lose more: the next step finds it overstretched and

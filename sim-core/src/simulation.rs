@@ -10,7 +10,7 @@
 use crate::choice::{SharedGpu, SolverChoice};
 use crate::costs::Costs;
 use crate::curves::curves;
-use crate::facts::Facts;
+use crate::facts::{Facts, max_stretch};
 use crate::forces::HoldFact;
 use crate::gpu::{DeviceYarn, GpuError, GpuSimulator};
 use crate::handover::Handover;
@@ -206,6 +206,14 @@ impl Simulation {
     /// As [`Self::state`].
     pub fn facts(&mut self) -> Result<Facts, SimError> {
         self.go_on(|gpu| Ok(gpu.facts()?), |cpu| Ok(cpu.facts()))
+    }
+
+    /// Largest strain of a segment now, as in [`Facts`].
+    ///
+    /// # Errors
+    /// As [`Self::state`].
+    pub fn max_stretch(&mut self) -> Result<f64, SimError> {
+        self.go_on(|gpu| Ok(gpu.max_stretch()?), |cpu| Ok(max_stretch(cpu.model(), cpu.state())))
     }
 
     /// What holds the fabric, or touches it, and how hard; on a GPU without the forces of bodies.

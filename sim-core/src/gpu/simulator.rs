@@ -328,6 +328,15 @@ impl GpuSimulator {
         })
     }
 
+    /// Largest strain of a segment now.
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn max_stretch(&mut self) -> Result<f64, GpuError> {
+        self.state()?;
+        Ok(facts::max_stretch(&self.model, &self.state))
+    }
+
     /// Forces of pins and clamps on the fabric in the state that was last read back.
     pub fn holds(&self) -> Vec<HoldFact> {
         let time_s = self.read_at.scene_time_s;

@@ -10,6 +10,7 @@
 
 use super::matrix::BlockMatrix;
 use super::product::Product;
+use super::vectors::{combine, dot};
 use glam::DVec3;
 
 /// A matrix M near A that is easily inverted.
@@ -58,14 +59,11 @@ pub(crate) fn solve(
             return Err(NotConverged { iterations });
         }
         let step = error / curvature;
-        for i in 0..x.len() {
-            x[i] += step * p[i];
-            r[i] -= step * q[i];
-        }
+        combine(1.0, x, step, &p);
+        combine(1.0, &mut r, -step, &q);
         preconditioner.apply(&r, &mut z);
         let next = dot(&r, &z);
-        let keep = next / error;
-        p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + keep * *p);
+        combine(next / error, &mut p, 1.0, &z);
         error = next;
         iterations += 1;
     }
@@ -84,8 +82,4 @@ fn translate(matrix: &BlockMatrix, nodes: &[u32], r: &[f64], x: &mut [f64]) {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -55,6 +55,7 @@ pub(crate) mod product;
 mod room;
 mod separator;
 pub(crate) mod tail;
+mod vectors;
 
 use crate::costs::{Costs, Stage, Watch};
 use crate::model::Model;
@@ -243,7 +244,12 @@ impl Solver {
         }
         let complete = match &mut self.complete {
             Some(complete) => complete,
-            none => none.insert(Factor::new(Pattern::complete(model, matrix))),
+            none => {
+                let mut watch = Watch::start();
+                let laid_out = none.insert(Factor::new(Pattern::complete(model, matrix)));
+                watch.lap(costs, Stage::Factorisation);
+                laid_out
+            }
         };
         self.last = Method::Direct;
         let factor = factorised(complete, matrix, costs)?;
