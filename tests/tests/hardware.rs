@@ -1,6 +1,8 @@
 //! What takes a graphics card: garments on the GPU, at sizes that take a software adapter minutes. Skipped, with a line that says so,
 //! where there is none. All kernels run in the tests of `sim-core` on any adapter.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, which clippy cannot see")]
+
 use sim_core::{Scene, SharedGpu, Simulation, SolverChoice};
 use tests::{gpu, skip};
 

@@ -131,11 +131,6 @@ impl GpuDevice {
             | wgpu::BufferUsages::UNIFORM
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC;
-        let usage = if size > LIMITS.max_uniform_buffer_binding_size {
-            usage - wgpu::BufferUsages::UNIFORM
-        } else {
-            usage
-        };
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(name),
             size,

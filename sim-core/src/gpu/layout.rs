@@ -3,7 +3,7 @@
 //! A record is declared in Rust and its WGSL text generated from the declaration. All fields are `f32` or `u32`, so both
 //! sides agree on every offset, in uniforms and in arrays alike. A test parses what is generated and compares.
 
-use crate::{air, bend, friction, layers, local, mass, overshoot, shear, step, stretch};
+use crate::{air, bend, friction, layers, local, mass, overshoot, shear, step, stretch, surroundings};
 use std::fmt::Write as _;
 
 /// Declares records of words.
@@ -372,7 +372,7 @@ pub(crate) fn prelude() -> String {
 }
 
 /// Constants of the physics.
-fn floats() -> [(&'static str, f64); 17] {
+fn floats() -> [(&'static str, f64); 18] {
     [
         ("LEAST_LENGTH", local::LEAST_LENGTH),
         ("BEND_JAM_FACTOR", bend::JAM_FACTOR),
@@ -387,6 +387,7 @@ fn floats() -> [(&'static str, f64); 17] {
         ("DRAWN_HEAVIEST", overshoot::HEAVIEST),
         ("DRAWN_PART", overshoot::PART),
         ("DRAWN_LEAST", overshoot::LEAST),
+        ("FIRM", surroundings::FIRM),
         ("MOST_DRAG", crate::body_contact::MOST_DRAG),
         ("VISCOSITY", air::VISCOSITY),
         ("PI", std::f64::consts::PI),

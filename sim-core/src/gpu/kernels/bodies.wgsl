@@ -93,7 +93,7 @@ fn hold_off(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = position[id.x].xyz;
     let v = velocity[id.x].xyz;
     let mass = nodes[id.x].mass;
-    let stiffness = params.stiffness_by_mass * mass;
+    let stiffness = max(params.stiffness_by_mass, FIRM / nodes[id.x].clearance) * mass;
     var diagonal = vec3<f32>(0.0);
     var beside = vec3<f32>(0.0);
     var impulse = vec3<f32>(0.0);

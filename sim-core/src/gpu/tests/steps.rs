@@ -3,7 +3,9 @@
 use super::agreement::pinned;
 use super::{device, spoilt, ten_fabrics};
 use crate::gpu::GpuSimulator;
+use crate::gpu::device::LIMITS;
 use crate::gpu::kernel::{Kernels, SOURCES, Source};
+use crate::gpu::stages::parts;
 use crate::handover::Handover;
 use crate::material::Material;
 use crate::noise::unit_hash;
@@ -11,6 +13,9 @@ use crate::scene::Scene;
 use crate::simulator::{SimError, Simulator};
 use glam::DVec3;
 use std::sync::Arc;
+use stitch_mesh::edge_counts::StitchSize;
+use stitch_mesh::lay::lay;
+use stitch_mesh::pieces::rectangle;
 use stitch_mesh::yarn_net::{YarnNet, YarnState};
 
 /// How far nodes may be apart after a step, in which they move by some tenths of a millimetre [m]: what conjugate gradients
@@ -46,6 +51,19 @@ fn ten_fabrics_at_rest_step_like_on_the_cpu() {
         println!("{name}: {difference:.1e} m, {} iterations", gpu.iterations());
         assert!(difference < CLOSE, "{name}: {difference:e}");
     }
+}
+
+#[test]
+fn a_piece_of_many_levels_steps_like_on_the_cpu() {
+    // The parts of 256 levels fill as much of a buffer as a uniform binding may have, and are bound one at a time.
+    let net = Arc::new(lay(&rectangle(2, 420, StitchSize::of_width(3e-3)).unwrap()));
+    let Some((mut cpu, mut gpu)) = both(&net, &Scene::empty(), 3) else { return };
+    assert!(parts(&gpu.system.tables, 0).len() as u64 > LIMITS.max_uniform_buffer_binding_size);
+    let before = cpu.state().clone();
+    assert_eq!(cpu.step().unwrap(), gpu.step().unwrap());
+    let (moved, difference) = (apart(cpu.state(), &before), apart(cpu.state(), gpu.state().unwrap()));
+    println!("moved {moved:.1e} m, {difference:.1e} m apart, {} iterations", gpu.iterations());
+    assert!(difference < 5e-2 * moved, "{difference:e} of {moved:e}");
 }
 
 /// The distance between a step of the CPU and one with these kernels, of fabric so thrown about that its segments turn; and what the
