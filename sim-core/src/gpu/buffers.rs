@@ -70,7 +70,6 @@ impl Buffers {
             ("p", 4 * dofs),
             ("q", 4 * dofs),
             ("z", 4 * dofs),
-            ("y", 4 * dofs),
             ("handed", 4 * u64::from(p.handed_count)),
             ("partial", 8 * spans(dofs)),
             ("sums", 48 * spans(nodes)),

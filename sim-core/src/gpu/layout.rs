@@ -47,6 +47,8 @@ records! {
         is_free: u32,
         /// Squared tolerance of conjugate gradients.
         tolerance: f32,
+        /// Part of the diagonal that is added to it for the factor.
+        shift: f32,
         node_count: u32,
         dof_count: u32,
         visit_count: u32,
@@ -343,6 +345,9 @@ pub(crate) const OF_BEND: u32 = 1;
 pub(crate) const OF_WRAP: u32 = 2;
 pub(crate) const OF_SHEAR: u32 = 3;
 
+/// Columns that the rows of a node have behind those of the matrix: what each row has for a motion of all nodes along an axis.
+pub(crate) const RIGID: u32 = 3;
+
 /// Vectors of four numbers that each kind of element leaves.
 pub(crate) const SEGMENT_OUT: u32 = 7;
 pub(crate) const BEND_OUT: u32 = 6;
@@ -396,7 +401,7 @@ fn floats() -> [(&'static str, f64); 18] {
 }
 
 /// Sizes and marks.
-fn integers() -> [(&'static str, u32); 21] {
+fn integers() -> [(&'static str, u32); 22] {
     [
         ("FROZEN", crate::model::FROZEN),
         ("NONE", NONE),
@@ -415,6 +420,7 @@ fn integers() -> [(&'static str, u32); 21] {
         ("OF_SEGMENT", OF_SEGMENT),
         ("OF_BEND", OF_BEND),
         ("OF_WRAP", OF_WRAP),
+        ("RIGID", RIGID),
         ("SEGMENT_OUT", SEGMENT_OUT),
         ("BEND_OUT", BEND_OUT),
         ("WRAP_OUT", WRAP_OUT),

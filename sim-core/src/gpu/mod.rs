@@ -8,10 +8,12 @@
 //!   nothing on a hundred metres of yarn; positions are measured from the middle of the fabric at the start. Conjugate gradients
 //!   begin with the old velocities, and what these leave is summed element by element from differences of velocities, as
 //!   b − A v₀ from the assembled matrix would lose the motion of the fabric as a whole (the stiffness of a segment is 4e5 times its mass).
+//!   For the same reason products with the matrix take differences between nodes first (`product.wgsl`): a pullover of 3 000 loops is 4 µm away
+//!   from the CPU's after four steps of up to 1/30 s, and was 26 µm.
 //! - **Gather, not scatter.** WGSL has no portable float atomics. Elements leave the factors of their rank-one matrices, and one
 //!   invocation a row sums what is around its node. Sums of scalar products go in two stages. So results have the same bits every time.
 //! - **Preconditioner.** The incomplete factorisation of `solver/factor.rs`, with the same groups in the same order, level by level
-//!   (`pattern.rs`), left-looking.
+//!   (`pattern.rs`), left-looking. What makes it definite where dropping does not leave it so goes from step to step (`shift.rs`).
 //!
 //! # Why not something that needs fewer dispatches
 //! Iterations of conjugate gradients to the tolerance of the CPU, hanging at h = 5 ms / free at h = 10 ms, after 30 steps:
@@ -47,6 +49,7 @@ mod exchange;
 mod kernel;
 mod layout;
 mod pattern;
+mod shift;
 mod simulator;
 mod stages;
 mod surroundings;

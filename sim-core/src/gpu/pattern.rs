@@ -9,7 +9,7 @@
 //! Chunks are runs of groups whose matrix and factor fit into one binding each. A group takes from its own chunk and the one
 //! before; rows further on are left out, which costs accuracy of the factor and nothing else.
 
-use super::layout::{Group, MOST_GROUP, NONE, Source};
+use super::layout::{Group, MOST_GROUP, NONE, RIGID, Source};
 use crate::model::Model;
 use crate::solver::groups::groups;
 use std::collections::BTreeMap;
@@ -141,7 +141,7 @@ impl Pattern {
             let own_factor = n * (n + u64::from(self.row_count(g)));
             let own_values: u64 = self.nodes[g]
                 .clone()
-                .map(|m| u64::from(widths[self.old[m as usize] as usize]) * u64::from(self.size(m)))
+                .map(|m| u64::from(widths[self.old[m as usize] as usize] + RIGID) * u64::from(self.size(m)))
                 .sum();
             if values + own_values > most || factor + own_factor > most {
                 (chunk, values, factor) = (chunk + 1, 0, 0);

@@ -5,6 +5,7 @@ use super::device::{GpuDevice, LIMITS};
 use super::drawn::Drawn;
 use super::kernel::Kernels;
 use super::layout::{NONE, Params, REJECTED_LEAPING, REJECTED_SHRINKING, Status};
+use super::shift::Shift;
 use super::surroundings::fit;
 use super::system::{System, Verdict};
 use super::tables::Tables;
@@ -34,7 +35,7 @@ const SPARE_ITERATIONS: u32 = 4;
 /// Iterations that are recorded in any case, but for the spare ones.
 const LEAST_ITERATIONS: u32 = 4;
 
-/// Iterations after which a step is given up.
+/// Iterations after which a step is given up, or tried with another shift.
 const MOST_ITERATIONS: u32 = 300;
 
 /// Simulated time between two states that are read back in any case, to go on from should the GPU be lost [s].
@@ -56,6 +57,7 @@ pub struct GpuSimulator {
     pub(super) step: f64,
     pub(super) progress: Progress,
     iterations: u32,
+    shift: Shift,
     /// What the steps have cost; none where nobody wants to know.
     costs: Option<Costs>,
     /// What lays out the yarn for a renderer, once one wants it; none where it can't.
@@ -116,6 +118,7 @@ impl GpuSimulator {
             read_at: progress.clone(),
             progress,
             iterations: 16,
+            shift: Shift::default(),
             costs: None,
             drawn: None,
             state,
@@ -218,18 +221,17 @@ impl GpuSimulator {
     /// One attempt at a step, and why it was thrown away if it was.
     fn attempt(&mut self) -> Result<Option<Rejection>, GpuError> {
         self.place_surroundings()?;
-        let params = self.params(self.step);
-        let mut recorded = self.iterations + SPARE_ITERATIONS;
         self.is_read = false;
-        let mut verdict = self.system.step(params, recorded, self.costs.as_mut())?;
-        while verdict.status.solved == 0 && recorded < MOST_ITERATIONS {
-            let more = recorded.min(MOST_ITERATIONS - recorded);
-            recorded += more;
-            verdict = self.system.go_on(more, self.costs.as_mut())?;
+        let mut verdict = self.solve()?;
+        while verdict.status.solved != 1 && self.shift.failed() {
+            verdict = self.solve()?;
         }
         // The first look at the error counts as one.
         let iterations = verdict.status.iterations.saturating_sub(1);
         self.iterations = iterations.max(LEAST_ITERATIONS);
+        if verdict.status.solved == 1 {
+            self.shift.solved_in(iterations);
+        }
         if let Some(costs) = &mut self.costs {
             costs.attempts += 1;
             costs.iterations += u64::from(iterations);
@@ -237,6 +239,19 @@ impl GpuSimulator {
             costs.residual = TOLERANCE * f64::from(error / goal.max(f32::MIN_POSITIVE)).sqrt();
         }
         Ok(if self.system.had_room(&verdict) { rejection(&verdict) } else { Some(Rejection::Crowded) })
+    }
+
+    /// A step with the shift that there is, whether or not it may follow.
+    fn solve(&mut self) -> Result<Verdict, GpuError> {
+        let mut recorded = self.iterations + SPARE_ITERATIONS;
+        let params = self.params(self.step);
+        let mut verdict = self.system.step(params, recorded, self.costs.as_mut())?;
+        while verdict.status.solved == 0 && recorded < MOST_ITERATIONS {
+            let more = recorded.min(MOST_ITERATIONS - recorded);
+            recorded += more;
+            verdict = self.system.go_on(more, self.costs.as_mut())?;
+        }
+        Ok(verdict)
     }
 
     /// What is the same for all elements in a step of `h`.
@@ -259,6 +274,7 @@ impl GpuSimulator {
             mass_damping: self.mass_damping as f32,
             is_free: u32::from(is_free),
             tolerance: (TOLERANCE * TOLERANCE) as f32,
+            shift: self.shift.part(),
             body_count: bodies.len() as u32,
             touching: 2.0 * widest,
             ..Params::default()

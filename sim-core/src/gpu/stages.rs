@@ -105,7 +105,9 @@ impl Stages {
         for (chunk, range) in tables.pattern.levels.iter().flatten() {
             place += PART_STRIDE;
             for (sweep, stage) in sweeps.iter_mut().zip(["factorise", "forward", "backward"]) {
-                sweep.push(maker.task(stage, Some(*chunk), range.end - range.start, Some(place), &[])?);
+                // Products are used up by then.
+                let aliases = &[("y", "q")];
+                sweep.push(maker.task(stage, Some(*chunk), range.end - range.start, Some(place), aliases)?);
             }
         }
         let [factorise, forward, mut backward] = sweeps;

@@ -6,7 +6,8 @@
 
 use super::GpuError;
 use super::layout::{
-    Bend, Block, Counts, Joint, MOST_STACK, Material as Yarn, Node, SHEAR_OUT, Segment, Shear, Stacked, Wrap,
+    Bend, Block, Counts, Joint, MOST_STACK, Material as Yarn, Node, RIGID, SHEAR_OUT, Segment, Shear,
+    Stacked, Wrap,
 };
 use super::pattern::Pattern;
 use crate::air::VISCOSITY;
@@ -138,7 +139,7 @@ impl Tables {
                     node.width += pattern.size(m);
                 }
                 node.block_end = chunk.blocks.len() as u32;
-                chunk.value_count += node.width * node.size;
+                chunk.value_count += (node.width + RIGID) * node.size;
                 columns.push(own);
             }
         }

@@ -20,7 +20,7 @@ use super::pattern::{Group, Part, Pattern};
 use rayon::prelude::*;
 
 /// Parts of the diagonal added to it, tried one after the other.
-const SHIFTS: [f32; 4] = [0.0, 1e-3, 4e-3, 1.6e-2];
+pub(crate) const SHIFTS: [f32; 4] = [0.0, 1e-3, 4e-3, 1.6e-2];
 
 /// Unknowns under which a factor is made and used on one thread: waking a second takes longer than it helps.
 pub(crate) const ALONE: usize = 40_000;

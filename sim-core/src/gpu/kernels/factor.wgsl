@@ -10,6 +10,7 @@
 @group(0) @binding(6) var<storage, read> shared_rows: array<u32>;
 @group(0) @binding(7) var<storage, read_write> factor: array<f32>;
 @group(0) @binding(8) var<storage, read> factor_before: array<f32>;
+@group(0) @binding(9) var<uniform> params: Params;
 
 // Rows of C, one after the other.
 var<workgroup> triangle: array<f32, MOST_TRIANGLE>;
@@ -70,7 +71,8 @@ fn factorise(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) 
                     let j = k % node.size;
                     let i = k / node.size;
                     let value = values[node.value + (before + i) * node.size + j];
-                    factor[group.front + (column + j) * height + block.front + i] = value;
+                    let firmer = select(1.0, 1.0 + params.shift, block.front + i == column + j);
+                    factor[group.front + (column + j) * height + block.front + i] = firmer * value;
                 }
             }
             before += block.size;
@@ -80,6 +82,7 @@ fn factorise(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) 
     subtract(group, lane);
 
     // Where dropping has made the block indefinite, a part of its diagonal is added, more with every try.
+    // (Of a whole step that takes many iterations because of it, see `shift.rs`.)
     var shift = 0.0;
     for (var attempt = 0u; attempt < 8u; attempt++) {
         if lane == 0u {

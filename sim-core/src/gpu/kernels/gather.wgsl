@@ -6,10 +6,12 @@
 @group(0) @binding(4) var<storage, read_write> values: array<f32>;
 @group(0) @binding(5) var<storage, read_write> load: array<vec2<f32>>;
 
-// One row of a node: where its entries are, and which part of the node it is (3: a sliding coordinate).
+// One row of a node: where its entries are, where what it has for a motion of all nodes is, and which part of the node it is
+// (3: a sliding coordinate).
 struct Row {
     first: u32,
     size: u32,
+    rigid: u32,
     part: u32,
 }
 
@@ -43,6 +45,10 @@ fn of_segment(row: Row, entry: u32, first: u32, role: u32) -> vec2<f32> {
     } else {
         inertia = vec4<f32>(-mass * w.xyz, mass * dot(w.xyz, w.xyz));
         stiffness.w += k.z;
+    }
+    // Stiffness cancels there.
+    for (var j = 0u; j < 3u; j++) {
+        values[row.rigid + j * row.size] += 3.0 * inertia[j];
     }
     for (var other = 0u; other < 2u; other++) {
         if other == role {
@@ -128,7 +134,7 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     let node = nodes[counts.first_node + id.x / 8u];
     for (var i = id.x % 8u; i < node.size; i += 8u) {
         let width = node.width;
-        for (var j = 0u; j < width; j++) {
+        for (var j = 0u; j < width + RIGID; j++) {
             values[node.value + i + j * node.size] = 0.0;
         }
         var sum = vec2<f32>(0.0);
@@ -141,7 +147,7 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
             if i >= 3u && place != i {
                 continue;
             }
-            let row = Row(node.value + i, node.size, min(i, 3u));
+            let row = Row(node.value + i, node.size, node.value + i + width * node.size, min(i, 3u));
             if kind == OF_SEGMENT {
                 sum += of_segment(row, entry, index * SEGMENT_OUT, role);
             } else if kind == OF_BEND {

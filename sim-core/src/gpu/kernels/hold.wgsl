@@ -31,6 +31,7 @@ fn hold(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var i = 0u; i < 3u; i++) {
         for (var j = 0u; j < 3u; j++) {
             values[diagonal + j * size + i] += block[j][i];
+            values[node.value + (node.width + j) * size + i] += block[j][i];
         }
         load[node.dof + i] += vec2<f32>(impulse[i], impulse[i] + brought[i] - brake[i]);
     }

@@ -1,4 +1,7 @@
 // q = A p, eight invocations a node: `solver/product.rs`, and the contacts of layers, `solver/tail.rs`.
+//
+// Stiffness acts on how a node moves against its neighbours. In a sum over its row the motion that they have in common would cancel, but
+// for rounding of the size of the mass; so differences are taken first, and what a motion in common has is summed beside (`gather.wgsl`).
 @group(0) @binding(0) var<uniform> counts: Counts;
 @group(0) @binding(1) var<storage, read> nodes: array<Node>;
 @group(0) @binding(2) var<storage, read> blocks: array<Block>;
@@ -21,10 +24,18 @@ fn product(@builtin(global_invocation_id) id: vec3<u32>) {
         var sum = 0.0;
         for (var b = node.block; b < node.block_end; b++) {
             let block = blocks[b];
-            for (var j = 0u; j < block.size; j++) {
+            for (var j = 0u; j < 3u; j++) {
+                sum += values[at] * (p[block.dof + j] - p[node.dof + j]);
+                at += node.size;
+            }
+            for (var j = 3u; j < block.size; j++) {
                 sum += values[at] * p[block.dof + j];
                 at += node.size;
             }
+        }
+        for (var j = 0u; j < RIGID; j++) {
+            sum += values[at] * p[node.dof + j];
+            at += node.size;
         }
         if i < 3u {
             for (var c = contacts_of[n].x; c < contacts_of[n].y; c++) {
