@@ -40,12 +40,13 @@ fn a_sweater_lands_as_on_the_cpu() {
         }
     }
     assert_eq!((on_gpu.solver(), on_gpu.notice()), ("gpu", None));
-    // Single nodes part where one runs into another a step sooner; the sweater as a whole falls as one.
+    // Single nodes part where one runs into another a step sooner, and the GPU halves steps that the CPU solves again with braces, so that it is up
+    // to a step behind. The sweater as a whole falls as one; its loops are 17 mm wide.
     let (a, b) = (on_cpu.state().unwrap().clone(), on_gpu.state().unwrap());
     let apart = a.position.iter().zip(&b.position).map(|(a, b)| a.distance(*b)).sum::<f64>();
     let mean = apart / a.position.len() as f64;
     println!("{mean:e} m apart in the mean");
-    assert!(mean < 3e-4, "{mean} m");
+    assert!(mean < 1.5e-3, "{mean} m");
 }
 
 #[test]
