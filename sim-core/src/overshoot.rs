@@ -22,8 +22,8 @@
 //! in a step, the faster it moves in the next: with 100 sweeps a sweater that lands on shoulders in steps of 1/30 s has steps that need
 //! braces. So a second round of sweeps takes only what is far too long.
 //!
-//! A body holds a node by 400 masses of its yarn in steps of 1/30 s. Between two such a light node goes nowhere: a sweep draws it to the
-//! one and back to the other, and the heavy ones move by a 400th. Nearly all segments that came out more than 2 % too long were there.
+//! A body holds a node by some hundred masses of its yarn in steps of 1/30 s. Between two such a light node goes nowhere: a sweep draws it to the
+//! one and back to the other, and the heavy ones hardly move. Nearly all segments that came out more than 2 % too long were there.
 //! With ten masses they sink 30 µm into a body, and the next step puts them out again.
 //!
 //! Of 451 709 segments of the sweater of 55 400 loops, those more than 2 % too long in ten steps of at most 1/30 s in which it is let go and lands:

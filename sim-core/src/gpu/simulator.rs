@@ -226,17 +226,8 @@ impl GpuSimulator {
         while verdict.status.solved != 1 && self.shift.failed() {
             verdict = self.solve()?;
         }
-        // The first look at the error counts as one.
-        let iterations = verdict.status.iterations.saturating_sub(1);
-        self.iterations = iterations.max(LEAST_ITERATIONS);
         if verdict.status.solved == 1 {
-            self.shift.solved_in(iterations);
-        }
-        if let Some(costs) = &mut self.costs {
-            costs.attempts += 1;
-            costs.iterations += u64::from(iterations);
-            let Status { error, goal, .. } = verdict.status;
-            costs.residual = TOLERANCE * f64::from(error / goal.max(f32::MIN_POSITIVE)).sqrt();
+            self.shift.solved_in(verdict.iterations());
         }
         Ok(if self.system.had_room(&verdict) { rejection(&verdict) } else { Some(Rejection::Crowded) })
     }
@@ -250,6 +241,14 @@ impl GpuSimulator {
             let more = recorded.min(MOST_ITERATIONS - recorded);
             recorded += more;
             verdict = self.system.go_on(more, self.costs.as_mut())?;
+        }
+        let iterations = verdict.iterations();
+        self.iterations = iterations.max(LEAST_ITERATIONS);
+        if let Some(costs) = &mut self.costs {
+            costs.attempts += 1;
+            costs.iterations += u64::from(iterations);
+            let Status { error, goal, .. } = verdict.status;
+            costs.residual = TOLERANCE * f64::from(error / goal.max(f32::MIN_POSITIVE)).sqrt();
         }
         Ok(verdict)
     }

@@ -22,6 +22,13 @@ pub(crate) struct Verdict {
     pub touching: u32,
 }
 
+impl Verdict {
+    /// Iterations of conjugate gradients. The first look at the error counts as one in the status.
+    pub fn iterations(&self) -> u32 {
+        self.status.iterations.saturating_sub(1)
+    }
+}
+
 /// A net on the device.
 pub(crate) struct System {
     pub gpu: GpuDevice,
