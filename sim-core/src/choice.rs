@@ -1,9 +1,9 @@
 //! Which solver a simulation is to have.
 //!
 //! # Practice
-//! A direct solution is the faster for little fabric, conjugate gradients for more (`solver/mod.rs`). A step on the GPU is some
-//! w + 1.5 h dispatches a sweep and two sweeps an iteration, a few thousand at a thousand loops, each of some microseconds,
-//! whatever the size: only above that has it something to gain. A software adapter never has.
+//! A direct solution is the faster for little fabric, conjugate gradients for more (`solver/mod.rs`). A step on the GPU is
+//! some hundred dispatches at least, each of some microseconds, and the longer chains of its factorisation leave most of a large GPU idle in little
+//! fabric: it has something to gain where the CPU takes tens of milliseconds. A software adapter never has.
 
 use crate::gpu::{GpuDevice, GpuError};
 use crate::solver::Method;

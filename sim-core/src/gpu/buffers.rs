@@ -39,8 +39,8 @@ impl Buffers {
             ("joints", gpu.upload("joints", &tables.joints)),
             ("old_dyes", gpu.upload("old_dyes", &tables.old_dyes)),
             ("groups", gpu.upload("groups", &p.groups)),
-            ("sources", gpu.upload("sources", &p.sources)),
-            ("shared_rows", gpu.upload("shared_rows", &p.shared_rows)),
+            ("tiles", gpu.upload("tiles", &p.changes.tiles)),
+            ("sources", gpu.upload("sources", &p.changes.sources)),
             ("rows", gpu.upload("rows", &p.row_dofs)),
             ("bodies", gpu.upload("bodies", &[BodyRecord::default()])),
             ("fields", gpu.upload("fields", &[0.0_f32])),
@@ -70,7 +70,7 @@ impl Buffers {
             ("p", 4 * dofs),
             ("q", 4 * dofs),
             ("z", 4 * dofs),
-            ("handed", 4 * u64::from(p.handed_count)),
+            ("handed", 4 * p.row_dofs.len() as u64),
             ("partial", 8 * spans(dofs)),
             ("sums", 48 * spans(nodes)),
             ("held_sums", 32 * spans(nodes)),
@@ -80,12 +80,13 @@ impl Buffers {
             ("worst", 4),
             ("touching", 4),
             ("shift", 16),
-            ("nothing", 16),
+            ("factor_before", 16),
         ] {
             whole.insert(name, gpu.buffer(name, bytes));
         }
-        let of_chunk = |c: &Chunk| {
+        let of_chunk = |(c, shared_rows): (&Chunk, &Vec<u32>)| {
             BTreeMap::from([
+                ("shared_rows", gpu.upload("shared_rows", shared_rows)),
                 ("counts", gpu.upload("counts", &[c.counts])),
                 ("segments", gpu.upload("segments", &c.segments)),
                 ("bends", gpu.upload("bends", &c.bends)),
@@ -97,7 +98,7 @@ impl Buffers {
                 ("factor", gpu.buffer("factor", 4 * c.factor_count)),
             ])
         };
-        let chunks = tables.chunks.iter().map(of_chunk).collect();
+        let chunks = tables.chunks.iter().zip(&p.changes.shared_rows).map(of_chunk).collect();
         Self { whole, chunks, cell_count: cell_count as u32, contact_capacity: contact_capacity as u32 }
     }
 
@@ -108,11 +109,12 @@ impl Buffers {
 
     /// The buffer that a kernel knows as `name` when it works on a chunk, or on everything.
     pub fn find(&self, chunk: Option<usize>, name: &str) -> Option<&wgpu::Buffer> {
-        if name == "factor_before" {
-            let before = chunk.and_then(|c| c.checked_sub(1)).and_then(|c| self.chunks[c].get("factor"));
-            return before.or_else(|| self.whole.get("nothing"));
-        }
         chunk.and_then(|c| self.chunks[c].get(name)).or_else(|| self.whole.get(name))
+    }
+
+    /// The buffers of all chunks that kernels know as `name`.
+    pub fn of_chunks<'a>(&'a self, name: &'static str) -> impl Iterator<Item = &'a wgpu::Buffer> {
+        self.chunks.iter().filter_map(move |chunk| chunk.get(name))
     }
 
     /// Puts a buffer in the place of another, which what is bound to that still has.

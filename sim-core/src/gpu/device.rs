@@ -43,8 +43,8 @@ pub struct GpuDevice {
 }
 
 impl GpuDevice {
-    /// Opens the best adapter of the machine; a software one will do. Asks for no more than every WebGPU device grants, so that
-    /// what runs on one runs on all.
+    /// Opens the best adapter of the machine; a software one will do. Asks for no more than every WebGPU device grants, but for the largest
+    /// bindings there are.
     ///
     /// # Errors
     /// No adapter, or one without compute shaders.
@@ -58,7 +58,11 @@ impl GpuDevice {
             pollster::block_on(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("simulation"),
-            required_limits: LIMITS,
+            required_limits: wgpu::Limits {
+                max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
+                max_buffer_size: adapter.limits().max_buffer_size,
+                ..LIMITS
+            },
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -97,6 +101,12 @@ impl GpuDevice {
     /// Whether the processor itself does the work, which it can do better without the detour.
     pub fn is_software(&self) -> bool {
         self.adapter.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Numbers that a binding may have.
+    pub(crate) fn largest_binding(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(FARTHEST) / 4
     }
 
     /// The kernels, compiled.
@@ -184,6 +194,9 @@ impl GpuDevice {
 /// The limits that every WebGPU device has: 128 MiB a binding, 256 MiB a buffer, eight storage buffers a kernel, 16 KiB of
 /// workgroup memory.
 pub(crate) const LIMITS: wgpu::Limits = wgpu::Limits::defaults();
+
+/// Size of a buffer up to which 32 bits count its bytes, for whoever does, with a sign [bytes].
+const FARTHEST: u64 = 1 << 31;
 
 /// Keeps the first failure, or the loss of the device, from which the others follow.
 fn keep(failure: &Mutex<Option<GpuError>>, error: GpuError) {

@@ -167,7 +167,9 @@ records! {
         width: u32,
         /// Its visits in the list of stacked visits.
         visit: u32,
-        /// The groups before its own whose elimination changes it.
+        /// Its group.
+        group: u32,
+        /// What the groups before its own hand on to it.
         incoming: u32, incoming_end: u32,
         /// Its neighbours along yarns.
         around: u32, around_end: u32,
@@ -215,20 +217,24 @@ records! {
         row_count: u32,
         /// Its front in the factor.
         front: u32,
-        /// What it hands on to its rows when solving.
-        handed: u32,
         node: u32, node_end: u32,
+    }
+    /// Some rows of a front, and the earlier groups that change them; see `gpu/changes.rs`.
+    Tile {
+        group: u32,
+        row: u32,
+        row_count: u32,
         source: u32, source_end: u32,
     }
-    /// An earlier group that changes the front of a group: the rows they share, those that are columns first.
+    /// An earlier group that changes a tile: of the rows it shares with the front, those that are columns there and those in the tile.
     Source {
         group: u32,
-        /// 1 if its front lies in the chunk before.
+        /// 1 if its front lies in another chunk.
         before: u32,
-        /// Its rows in the list of shared rows.
-        first: u32,
-        count: u32,
-        columns: u32,
+        column: u32,
+        column_count: u32,
+        row: u32,
+        row_count: u32,
     }
     /// Body; see `body.rs`. Kinds are 0 ground, 1 sphere, 2 capsule, 3 box, 4 mesh.
     Body {
@@ -317,6 +323,16 @@ records! {
 /// Unknowns that a group may have: its diagonal block is factorised in workgroup memory.
 pub(crate) const MOST_GROUP: usize = 80;
 
+/// Invocations of a workgroup that works on a front stand in a square with this side.
+pub(crate) const SIDE: u32 = 16;
+
+/// Rows of a front that one workgroup works on: four an invocation.
+pub(crate) const TILE: u32 = 4 * SIDE;
+
+/// Columns of a front that one invocation has.
+const ACROSS: u32 = MOST_GROUP as u32 / SIDE;
+const _: () = assert!(ACROSS * SIDE == MOST_GROUP as u32 && SIDE * SIDE == WIDE);
+
 /// Visits that a node may have.
 pub(crate) const MOST_STACK: usize = 12;
 
@@ -401,12 +417,16 @@ fn floats() -> [(&'static str, f64); 18] {
 }
 
 /// Sizes and marks.
-fn integers() -> [(&'static str, u32); 22] {
+fn integers() -> [(&'static str, u32); 26] {
     [
         ("FROZEN", crate::model::FROZEN),
         ("NONE", NONE),
         ("MOST_GROUP", MOST_GROUP as u32),
         ("MOST_TRIANGLE", (MOST_GROUP * (MOST_GROUP + 1) / 2) as u32),
+        ("SIDE", SIDE),
+        ("TILE", TILE),
+        ("ACROSS", ACROSS),
+        ("SHARES", ACROSS * WIDE),
         ("MOST_STACK", MOST_STACK as u32),
         ("MOST_CONTACTS", MOST_CONTACTS as u32),
         ("CROWDED", CROWDED),

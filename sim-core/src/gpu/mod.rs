@@ -12,10 +12,11 @@
 //!   from the CPU's after four steps of up to 1/30 s, and was 26 µm.
 //! - **Gather, not scatter.** WGSL has no portable float atomics. Elements leave the factors of their rank-one matrices, and one
 //!   invocation a row sums what is around its node. Sums of scalar products go in two stages. So results have the same bits every time.
-//! - **Preconditioner.** The incomplete factorisation of `solver/factor.rs`, with the same groups in the same order, level by level
-//!   (`pattern.rs`), left-looking. What makes it definite where dropping does not leave it so goes from step to step (`shift.rs`).
+//! - **Preconditioner.** The complete factorisation of `solver/factor.rs` in smaller groups, level by level (`pattern.rs`), each as workgroups
+//!   can do it (`changes.rs`). Where there is no room for that, some 75 000 loops, the incomplete one; what makes it definite where
+//!   dropping does not leave it so goes from step to step (`shift.rs`).
 //!
-//! # Why not something that needs fewer dispatches
+//! # Other preconditioners
 //! Iterations of conjugate gradients to the tolerance of the CPU, hanging at h = 5 ms / free at h = 10 ms, after 30 steps:
 //!
 //! | preconditioner, in groups of two courses of a wale | stockinette 20 × 20 | rib | cable | stockinette 40 × 40 |
@@ -28,20 +29,24 @@
 //! | IC(0), row by row | 17 / 43 | 16 / 31 | 94 / 69 | 23 / – |
 //! | **IC(1), row by row** | 12 / 23 | 10 / 16 | 52 / 42 | 14 / – |
 //!
-//! The order decides: only elimination row by row carries along what happens far away. Its price are some w + 1.5 h levels a
-//! sweep, each a dispatch.
+//! The order decides: only elimination row by row carries along what happens far away. Its price are some w + 1.5 h levels a sweep, each a
+//! dispatch. A complete factor has a quarter of these levels or less, and leaves 1 … 3 iterations in ten small
+//! fabrics, to a fiftieth of that tolerance (`tests/factor.rs`); its price is memory.
 //!
 //! # Practice
 //! - A step is one submission with one small read-back, as long as conjugate gradients take no more iterations than the step before and
 //!   a few. A kernel that finds them done returns at once; if they are not, another submission goes on with them.
-//! - The device is asked for no more than the limits that every WebGPU device has. What grows with elements or the matrix is kept in
-//!   chunks of less than 128 MiB; a loop takes 24 KB in all, of 34 … 90 KB on the CPU.
+//! - The device is asked for no more than the limits that every WebGPU device has, and for the largest bindings it has itself: what grows with
+//!   elements or the matrix is kept in chunks of that size, 128 MiB at least. A loop takes 34 KB in all in a small piece and 50 in a sweater of 57 000 (24
+//!   with an incomplete factor).
 //! - Topology edits and yarn that slips out make a new net, on the CPU, and new tables.
 //! - The window simulates on the device that it draws on, where that is a graphics card, and what is simulated is drawn from where it is
 //!   (`drawn.rs`). Back to the CPU come 20 bytes for every 32 spans of yarn a step, and every 0.05 s the state.
-//! - Run on lavapipe only, where it is slower than the CPU solver; speed on hardware has not been measured.
+//! - Run on lavapipe only, where it is slower than the CPU solver; speed on hardware has not been measured. There the sweater of 3 076
+//!   loops takes 6 s a step (13 with the incomplete factor and its iterations), that of 57 118 took 280, at 2 Gflop/s.
 
 mod buffers;
+mod changes;
 mod device;
 mod drawn;
 mod elements;

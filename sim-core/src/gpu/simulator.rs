@@ -1,10 +1,11 @@
 //! The simulator on the GPU: what `simulator.rs` does on the CPU.
 
 use super::GpuError;
-use super::device::{GpuDevice, LIMITS};
+use super::device::GpuDevice;
 use super::drawn::Drawn;
 use super::kernel::Kernels;
 use super::layout::{NONE, Params, REJECTED_LEAPING, REJECTED_SHRINKING, Status};
+use super::pattern::Room;
 use super::shift::Shift;
 use super::surroundings::fit;
 use super::system::{System, Verdict};
@@ -86,14 +87,14 @@ impl GpuSimulator {
 
     /// Goes on with what another simulation has come to.
     pub(crate) fn resume(gpu: &GpuDevice, from: Handover) -> Result<Self, SimError> {
-        Self::with(gpu, gpu.kernels()?, LIMITS.max_storage_buffer_binding_size / 4, from)
+        Self::with(gpu, gpu.kernels()?, Room::on(gpu), from)
     }
 
-    /// The same with other kernels, and another limit to the numbers in a binding.
+    /// The same with other kernels, and other room.
     pub(crate) fn with(
         gpu: &GpuDevice,
         kernels: Kernels,
-        most: u64,
+        room: Room,
         from: Handover,
     ) -> Result<Self, SimError> {
         let step = from.first_step();
@@ -103,7 +104,7 @@ impl GpuSimulator {
         // What has been taken in stands in the tables beside the turns.
         let mut laid = model.clone();
         take_in.shorten_turns(&mut laid, -state.taken_in);
-        let tables = Tables::new(&laid, &materials, &take_in, origin, most)?;
+        let tables = Tables::new(&laid, &materials, &take_in, origin, room)?;
         let mut simulator = Self {
             system: System::new(gpu, kernels, tables, &model.resolve(&materials))?,
             take_in,
@@ -202,9 +203,8 @@ impl GpuSimulator {
         let net = Arc::new(done.net);
         let model = model_after(&self.model.net, Arc::clone(&net), &done.state, &done.was)?;
         let take_in = TakeIn::default();
-        let most = LIMITS.max_storage_buffer_binding_size / 4;
-        let tables = Tables::new(&model, &self.materials, &take_in, self.origin, most)?;
         let gpu = self.system.gpu.clone();
+        let tables = Tables::new(&model, &self.materials, &take_in, self.origin, Room::on(&gpu))?;
         let kernels = gpu.kernels()?;
         self.system = System::new(&gpu, kernels, tables, &model.resolve(&self.materials))?;
         self.progress.surgery.add(operation, self.taken_in);

@@ -8,6 +8,7 @@ use super::layout::{NARROW, Part, SUM_SPAN, WIDE};
 use super::tables::Tables;
 use crate::costs::Stage;
 use crate::overshoot::SWEEPS;
+use std::ops::Range;
 
 /// The dispatches of a step, in their order.
 pub(crate) struct Stages {
@@ -46,6 +47,20 @@ impl Maker<'_> {
         self.kernels.task(self.gpu, stage, workgroups, part, |name| {
             let name = aliases.iter().find(|(from, _)| *from == name).map_or(name, |(_, to)| *to);
             self.buffers.find(chunk, name)
+        })
+    }
+
+    /// A dispatch over a part, which changes the factor of a chunk by that of another one.
+    fn part_task(
+        &self,
+        stage: &str,
+        [from, chunk]: [usize; 2],
+        place: u32,
+        range: &Range<u32>,
+    ) -> Result<Task, GpuError> {
+        self.kernels.task(self.gpu, stage, range.end - range.start, Some(place), |name| match name {
+            "factor_before" if from != chunk => self.buffers.find(Some(from), "factor"),
+            _ => self.buffers.find(Some(chunk), name),
         })
     }
 }
@@ -100,17 +115,41 @@ impl Stages {
         }
 
         // Level by level, forwards and backwards.
-        let mut sweeps: [Vec<Task>; 3] = Default::default();
+        let mut factorise = Vec::new();
+        for (c, chunk) in tables.chunks.iter().enumerate() {
+            let workgroups = (8 * chunk.counts.node_count).div_ceil(WIDE);
+            factorise.push(maker.task("fill", Some(c), workgroups, None, &[])?);
+        }
+        let mut sweeps: [Vec<Task>; 2] = Default::default();
         let mut place = 0;
-        for (chunk, range) in tables.pattern.levels.iter().flatten() {
+        let mut on_part = |stage: &str, [from, chunk]: [usize; 2], range: &Range<u32>| {
             place += PART_STRIDE;
-            for (sweep, stage) in sweeps.iter_mut().zip(["factorise", "forward", "backward"]) {
-                // Products are used up by then.
-                let aliases = &[("y", "q")];
-                sweep.push(maker.task(stage, Some(*chunk), range.end - range.start, Some(place), aliases)?);
+            maker.part_task(stage, [from, chunk], place, range)
+        };
+        for (groups, level) in tables.pattern.levels.iter().zip(&tables.pattern.changes.levels) {
+            for (chunk, range) in groups {
+                let eliminate = on_part("eliminate", [*chunk; 2], range)?;
+                for (sweep, stage) in sweeps.iter_mut().zip(["forward", "backward"]) {
+                    // Products are used up by then.
+                    let aliases = &[("y", "q")];
+                    sweep.push(maker.task(
+                        stage,
+                        Some(*chunk),
+                        eliminate.workgroups,
+                        eliminate.part,
+                        aliases,
+                    )?);
+                }
+                factorise.push(eliminate);
+            }
+            for (chunk, range) in &level.below {
+                factorise.push(on_part("divide", [*chunk; 2], range)?);
+            }
+            for (chunks, range) in &level.later {
+                factorise.push(on_part("take_away", *chunks, range)?);
             }
         }
-        let [factorise, forward, mut backward] = sweeps;
+        let [forward, mut backward] = sweeps;
         backward.reverse();
         let precondition = || forward.iter().chain(&backward).map(Task::again);
         let of =
@@ -179,7 +218,7 @@ pub(crate) fn parts(tables: &Tables, pins: u32) -> Vec<u8> {
         bytes.resize(bytes.len().next_multiple_of(PART_STRIDE as usize), 0_u8);
     };
     lay(0, pins);
-    for (_, range) in tables.pattern.levels.iter().flatten() {
+    for range in tables.pattern.runs() {
         lay(range.start, range.end - range.start);
     }
     bytes
@@ -191,7 +230,7 @@ pub(crate) fn stage_of(task: &Task) -> Stage {
         "segment" | "bend" | "wrap" | "shear" | "gather" | "pull_at" => Stage::Assembly,
         "normal" | "friction" => Stage::Friction,
         "hold_off" | "pin" | "held_span" | "link" | "meet" | "hold" => Stage::Contacts,
-        "factorise" => Stage::Factorisation,
+        "fill" | "eliminate" | "divide" | "take_away" => Stage::Factorisation,
         "begin" | "forward" | "backward" | "product" | "sum_span" | "choose_step" | "judge_error" | "go"
         | "turn" => Stage::Iterations,
         _ => Stage::Rest,

@@ -176,6 +176,9 @@ impl System {
         for name in ["heads", "status", "touching", "p", "back"] {
             submission.encoder.clear_buffer(self.buffers.whole(name), 0, None);
         }
+        for factor in self.buffers.of_chunks("factor") {
+            submission.encoder.clear_buffer(factor, 0, None);
+        }
     }
 
     /// So many iterations, none once they are done; then the new state, whether it may follow the old, and if so in its place.

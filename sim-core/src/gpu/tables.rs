@@ -9,7 +9,7 @@ use super::layout::{
     Bend, Block, Counts, Joint, MOST_STACK, Material as Yarn, Node, RIGID, SHEAR_OUT, Segment, Shear,
     Stacked, Wrap,
 };
-use super::pattern::Pattern;
+use super::pattern::{Pattern, Room};
 use crate::air::VISCOSITY;
 use crate::friction::Stack;
 use crate::material::Material;
@@ -60,13 +60,13 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    /// The tables for `model`, whose net is laid about `origin`. No binding of matrix or factor has more than `most` numbers.
+    /// The tables for `model`, whose net is laid about `origin`. How the factor is laid out depends on the `room` there is.
     pub fn new(
         model: &Model,
         materials: &Materials,
         take_in: &TakeIn,
         origin: DVec3,
-        most: u64,
+        room: Room,
     ) -> Result<Self, GpuError> {
         if let Some(node) = model.net.nodes.iter().position(|n| n.visits.len() > MOST_STACK) {
             let yarns = model.net.nodes[node].visits.len();
@@ -80,7 +80,7 @@ impl Tables {
         if let Some(node) = widths.iter().position(|w| *w > 0xfff) {
             return Err(GpuError::Unsupported(format!("node {node} is joined to {} unknowns", widths[node])));
         }
-        let pattern = Pattern::new(model, &widths, most);
+        let pattern = Pattern::new(model, &widths, room);
         let mut tables = Self {
             nodes: vec![Node::default(); near.len()],
             stacked: Vec::new(),
@@ -126,6 +126,7 @@ impl Tables {
                 others.sort_unstable();
                 let node = &mut self.nodes[n as usize];
                 (node.dof, node.size) = (pattern.dof[n as usize], pattern.size(n));
+                node.group = pattern.place[g];
                 node.block = chunk.blocks.len() as u32;
                 node.value = chunk.value_count;
                 let mut own = Vec::with_capacity(others.len());

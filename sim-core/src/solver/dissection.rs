@@ -21,17 +21,20 @@ use crate::model::Model;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Pieces of at most this many nodes are not cut again.
-const LEAF: usize = 8;
-
-/// Unknowns in a group, about; those of a large separator go into several.
-const MOST_UNKNOWNS: u32 = 256;
-
 /// The part of all nodes that are in the first set, and in the second.
 const PART: f64 = 0.3;
 
+/// How large groups are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sizes {
+    /// Pieces of at most this many nodes are not cut again.
+    pub leaf: usize,
+    /// Unknowns in a group, about; those of a large separator go into several.
+    pub most: u32,
+}
+
 /// The nodes of `model` in groups, in the order of their elimination, and the ranges of both halves and of what joins them.
-pub(crate) fn dissected(model: &Model) -> (Vec<Vec<u32>>, Vec<Range<usize>>) {
+pub(crate) fn dissected(model: &Model, sizes: Sizes) -> (Vec<Vec<u32>>, Vec<Range<usize>>) {
     let count = model.net.nodes.len();
     let mut neighbours = model.neighbours.clone();
     for a in 0..count {
@@ -44,12 +47,12 @@ pub(crate) fn dissected(model: &Model) -> (Vec<Vec<u32>>, Vec<Range<usize>>) {
         size: model.start.windows(2).map(|s| s[1] - s[0]).collect(),
         neighbours,
     };
-    let (halves, joint) = match Dissection::new(&fabric).best_cut((0..count as u32).collect()) {
+    let (halves, joint) = match Dissection::new(&fabric, sizes).best_cut((0..count as u32).collect()) {
         Ok(Cut { sides, separator }) => (sides, separator),
         Err(nodes) => ([nodes, Vec::new()], Vec::new()),
     };
     let dissect = |half| {
-        let mut dissection = Dissection::new(&fabric);
+        let mut dissection = Dissection::new(&fabric, sizes);
         dissection.dissect(half);
         dissection.groups
     };
@@ -58,7 +61,7 @@ pub(crate) fn dissected(model: &Model) -> (Vec<Vec<u32>>, Vec<Range<usize>>) {
     let mut ends = vec![groups.len()];
     groups.extend(right);
     ends.push(groups.len());
-    let mut last = Dissection::new(&fabric);
+    let mut last = Dissection::new(&fabric, sizes);
     last.add(joint);
     groups.extend(last.groups);
     let count = groups.len();
@@ -90,6 +93,7 @@ struct Dissection<'a> {
     /// The stamp of the set that each node was last put in, and its place there.
     place: Vec<(u32, u32)>,
     stamp: u32,
+    sizes: Sizes,
     /// Nodes in the order of their elimination.
     groups: Vec<Vec<u32>>,
 }
@@ -101,8 +105,8 @@ struct Cut {
 }
 
 impl<'a> Dissection<'a> {
-    fn new(fabric: &'a Fabric) -> Self {
-        Self { fabric, place: vec![(0, 0); fabric.size.len()], stamp: 0, groups: Vec::new() }
+    fn new(fabric: &'a Fabric, sizes: Sizes) -> Self {
+        Self { fabric, place: vec![(0, 0); fabric.size.len()], stamp: 0, sizes, groups: Vec::new() }
     }
 
     fn dissect(&mut self, nodes: Vec<u32>) {
@@ -132,7 +136,7 @@ impl<'a> Dissection<'a> {
                 Some(group) => group.push(node),
                 None => {
                     self.groups.push(vec![node]);
-                    room = MOST_UNKNOWNS;
+                    room = self.sizes.most;
                 }
             }
             room -= size;
@@ -141,7 +145,7 @@ impl<'a> Dissection<'a> {
 
     /// The cut that makes for the fewest operations, or the nodes again if they are too few.
     fn best_cut(&mut self, nodes: Vec<u32>) -> Result<Cut, Vec<u32>> {
-        if nodes.len() <= LEAF {
+        if nodes.len() <= self.sizes.leaf {
             return Err(nodes);
         }
         let mut best: Option<(f64, Cut)> = None;
@@ -217,7 +221,7 @@ mod tests {
     #[test]
     fn every_node_is_in_one_group_and_halves_touch_the_joint_alone() {
         let model = crate::testing::swatch_model(6, 5);
-        let (groups, parts) = dissected(&model);
+        let (groups, parts) = dissected(&model, Sizes { leaf: 8, most: 256 });
         let mut nodes = groups.concat();
         nodes.sort_unstable();
         assert!(nodes.into_iter().eq(0..model.net.nodes.len() as u32));

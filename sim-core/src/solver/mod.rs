@@ -41,7 +41,7 @@
 
 #[cfg(test)]
 mod agreement;
-mod dissection;
+pub(crate) mod dissection;
 mod elimination;
 pub(crate) mod factor;
 pub(crate) mod gradients;

@@ -11,7 +11,7 @@
 //! Each group has a *front*: one dense matrix with a column for each of its n unknowns, and under the n rows of its own its m
 //! rows of others. It lies column by column.
 
-use super::dissection::dissected;
+use super::dissection::{Sizes, dissected};
 use super::groups::groups;
 use super::matrix::BlockMatrix;
 use super::packed::tile_count;
@@ -31,6 +31,18 @@ pub(crate) struct Run {
 
 /// Entries in a run, in the mean, from which a product is better worked out in place than copied there.
 const LONG: usize = 32;
+
+/// Groups of a complete factorisation.
+const SIZES: Sizes = Sizes { leaf: 8, most: 256 };
+
+/// How far rows are handed on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fill {
+    /// From the rows of the matrix itself: an incomplete factorisation.
+    Once,
+    /// Through the whole tree of elimination: a complete one.
+    Always,
+}
 
 /// What the elimination of a group does to the front of a later one.
 pub(crate) struct Change {
@@ -96,30 +108,26 @@ pub(crate) struct Pattern {
 impl Pattern {
     /// Of the complete factorisation.
     pub fn complete(model: &Model, matrix: &BlockMatrix) -> Self {
-        let (members, parts) = dissected(model);
-        let order = Order::new(model, &members);
-        let mut rows = order.rows(model);
-        order.hand_on_always(&mut rows);
-        Self::new(model, matrix, order, &rows, parts)
+        let (members, parts) = dissected(model, SIZES);
+        Self::new(model, matrix, &members, Fill::Always, parts)
     }
 
     /// Of the incomplete one.
     pub fn incomplete(model: &Model, matrix: &BlockMatrix) -> Self {
         let mut members = groups(model);
         let parts = sort_into_parts(model, &mut members);
-        let order = Order::new(model, &members);
-        let mut rows = order.rows(model);
-        order.hand_on_once(&mut rows);
-        Self::new(model, matrix, order, &rows, parts)
+        Self::new(model, matrix, &members, Fill::Once, parts)
     }
 
     fn new(
         model: &Model,
         matrix: &BlockMatrix,
-        order: Order,
-        rows: &[Vec<u32>],
+        members: &[Vec<u32>],
+        fill: Fill,
         parts: Vec<Range<usize>>,
     ) -> Self {
+        let order = Order::new(model, members);
+        let rows = order.rows(model, fill);
         let mut groups: Vec<Group> = Vec::with_capacity(rows.len());
         for (g, below) in rows.iter().enumerate() {
             let rows: Vec<u32> = below.iter().flat_map(|n| order.unknowns(model, *n)).collect();
@@ -141,6 +149,11 @@ impl Pattern {
         let parts = parts.into_iter().map(part).collect();
         Self { parts, place: order.place, blocks, groups }
     }
+}
+
+/// The nodes of later groups that each of `groups`, sorted as they are eliminated, is joined to, in that order.
+pub(crate) fn rows(model: &Model, groups: &[Vec<u32>], fill: Fill) -> Vec<Vec<u32>> {
+    Order::new(model, groups).rows(model, fill)
 }
 
 /// The order of elimination.
@@ -185,7 +198,7 @@ impl Order {
     }
 
     /// The nodes of later groups that each group is joined to, in the order of elimination.
-    fn rows(&self, model: &Model) -> Vec<Vec<u32>> {
+    fn rows(&self, model: &Model, fill: Fill) -> Vec<Vec<u32>> {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); self.first.len() - 1];
         for (a, neighbours) in model.neighbours.iter().enumerate() {
             for &b in neighbours {
@@ -198,6 +211,10 @@ impl Order {
             }
         }
         self.tidy(&mut rows);
+        match fill {
+            Fill::Once => self.hand_on_once(&mut rows),
+            Fill::Always => self.hand_on_always(&mut rows),
+        }
         rows
     }
 

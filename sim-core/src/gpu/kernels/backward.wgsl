@@ -7,10 +7,11 @@
 @group(0) @binding(5) var<storage, read_write> z: array<f32>;
 @group(0) @binding(6) var<storage, read> status: Status;
 
-var<workgroup> later: array<f32, NARROW>;
+// What each invocation has of the sums of its columns.
+var<workgroup> shares: array<f32, SHARES>;
 var<workgroup> known: array<f32, MOST_GROUP>;
 
-@compute @workgroup_size(NARROW)
+@compute @workgroup_size(WIDE)
 fn backward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id: vec3<u32>) {
     if status.solved != 0u {
         return;
@@ -18,27 +19,30 @@ fn backward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) i
     let group = groups[part.first + id.x];
     let n = group.size;
     let height = n + group.row_count;
-    for (var i = lane; i < n; i += NARROW) {
-        known[i] = y[group.dof + i];
-    }
-    for (var first = 0u; first < group.row_count; first += NARROW) {
-        workgroupBarrier();
-        if first + lane < group.row_count {
-            later[lane] = z[rows[group.row + first + lane]];
-        }
-        workgroupBarrier();
-        let count = min(NARROW, group.row_count - first);
-        for (var i = lane; i < n; i += NARROW) {
-            let column = group.front + i * height + n + first;
-            var sum = 0.0;
-            for (var k = 0u; k < count; k++) {
-                sum += factor[column + k] * later[k];
+    // Invocations go down the rows in sixteens, as these lie; each sixteen has every sixteenth column.
+    var sums: array<f32, ACROSS>;
+    for (var k = lane % SIDE; k < group.row_count; k += SIDE) {
+        let later = z[rows[group.row + k]];
+        for (var b = 0u; b < ACROSS; b++) {
+            let i = b * SIDE + lane / SIDE;
+            if i < n {
+                sums[b] += factor[group.front + i * height + n + k] * later;
             }
-            known[i] -= sum;
         }
+    }
+    for (var b = 0u; b < ACROSS; b++) {
+        shares[b * WIDE + lane] = sums[b];
     }
     workgroupBarrier();
-    for (var i = lane; i < n; i += NARROW) {
+    for (var i = lane; i < n; i += WIDE) {
+        var sum = y[group.dof + i];
+        for (var k = 0u; k < SIDE; k++) {
+            sum -= shares[(i / SIDE) * WIDE + (i % SIDE) * SIDE + k];
+        }
+        known[i] = sum;
+    }
+    workgroupBarrier();
+    for (var i = lane; i < n; i += WIDE) {
         let column = group.front + i * height;
         var sum = 0.0;
         for (var k = i; k < n; k++) {

@@ -13,7 +13,7 @@
 var<workgroup> known: array<f32, MOST_GROUP>;
 var<workgroup> solved: array<f32, MOST_GROUP>;
 
-@compute @workgroup_size(NARROW)
+@compute @workgroup_size(WIDE)
 fn forward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id: vec3<u32>) {
     if status.solved != 0u {
         return;
@@ -21,7 +21,7 @@ fn forward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id
     let group = groups[part.first + id.x];
     let n = group.size;
     let height = n + group.row_count;
-    for (var i = lane; i < n; i += NARROW) {
+    for (var i = lane; i < n; i += WIDE) {
         let dof = group.dof + i;
         var m = group.node;
         while m + 1u < group.node_end && nodes[m + 1u].dof <= dof {
@@ -35,7 +35,7 @@ fn forward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id
         known[i] = sum;
     }
     workgroupBarrier();
-    for (var i = lane; i < n; i += NARROW) {
+    for (var i = lane; i < n; i += WIDE) {
         var sum = 0.0;
         for (var k = 0u; k <= i; k++) {
             sum += factor[group.front + k * height + i] * known[k];
@@ -44,11 +44,11 @@ fn forward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id
         y[group.dof + i] = sum;
     }
     workgroupBarrier();
-    for (var i = lane; i < group.row_count; i += NARROW) {
+    for (var i = lane; i < group.row_count; i += WIDE) {
         var sum = 0.0;
         for (var k = 0u; k < n; k++) {
             sum += factor[group.front + k * height + n + i] * solved[k];
         }
-        handed[group.handed + i] = sum;
+        handed[group.row + i] = sum;
     }
 }

@@ -10,6 +10,7 @@ use crate::costs::Costs;
 use crate::friction::Anchors;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::layout::Params;
+use crate::gpu::pattern::Room;
 use crate::gpu::{GpuDevice, GpuSimulator};
 use crate::handover::Handover;
 use crate::material::Material;
@@ -37,11 +38,8 @@ const VELOCITY: f64 = 1e-2;
 /// Tolerance of conjugate gradients here, near what single precision can do.
 const TIGHT: f32 = 1e-5;
 
-/// So many that a factor cut into chunks of a few stitches does, too.
+/// So many that an incomplete factor does, too.
 const MOST_ITERATIONS: u32 = 300;
-
-/// Numbers in a binding, so many that there is one chunk.
-pub(super) const ONE_CHUNK: u64 = 1 << 25;
 
 /// The same fabric in the same state, on the CPU and on the device.
 pub(super) struct Pair {
@@ -57,16 +55,16 @@ struct Kinds {
 }
 
 impl Pair {
-    /// A fabric from a state, its binding limited to `most` numbers.
+    /// A fabric from a state, on a device with so much `room`.
     pub fn new(
         device: &GpuDevice,
         kernels: Kernels,
         net: &YarnNet,
         state: YarnState,
         scene: Scene,
-        most: u64,
+        room: Room,
     ) -> Self {
-        Self::of_yarn(Material::for_loop_width(3e-3), device, kernels, net, state, scene, most)
+        Self::of_yarn(Material::for_loop_width(3e-3), device, kernels, net, state, scene, room)
     }
 
     /// The same of another yarn.
@@ -77,12 +75,12 @@ impl Pair {
         net: &YarnNet,
         state: YarnState,
         scene: Scene,
-        most: u64,
+        room: Room,
     ) -> Self {
         let net = Arc::new(net.clone());
         let materials = Materials::from(yarn);
         let from = Handover::new(&net, materials.clone(), scene.clone(), state).unwrap();
-        let gpu = GpuSimulator::with(device, kernels, most, from).unwrap();
+        let gpu = GpuSimulator::with(device, kernels, room, from).unwrap();
         let mut state = gpu.last_state().clone();
         // As the device has it.
         let origin = gpu.origin();
@@ -279,8 +277,14 @@ pub(super) fn pinned(net: &YarnNet) -> Scene {
 fn every_kernel_does_what_the_cpu_does() {
     let Some(device) = device() else { return };
     for (name, net) in ten_fabrics() {
-        let mut pair =
-            Pair::new(&device, device.kernels().unwrap(), &net, crumpled(&net), pinned(&net), ONE_CHUNK);
+        let mut pair = Pair::new(
+            &device,
+            device.kernels().unwrap(),
+            &net,
+            crumpled(&net),
+            pinned(&net),
+            Room::on(&device),
+        );
         for (what, difference, bound) in pair.differences() {
             println!("{name}: {what} {difference:.1e}");
             assert!(difference < bound, "{name}: {what} is off by {difference:.1e}");
@@ -301,7 +305,7 @@ fn weak_forces_are_those_of_the_cpu() {
             let kernels = device.kernels().unwrap();
             let scene = Scene::empty();
             let mut pair =
-                Pair::of_yarn(yarn.clone(), &device, kernels, net, crumpled(net), scene, ONE_CHUNK);
+                Pair::of_yarn(yarn.clone(), &device, kernels, net, crumpled(net), scene, Room::on(&device));
             pair.assemble();
             pair.run_until("gather");
             let rhs = pair.unlike(&pair.stepper.system.rhs, &pair.load(0));
@@ -315,11 +319,18 @@ fn weak_forces_are_those_of_the_cpu() {
 fn the_same_in_many_chunks() {
     let Some(device) = device() else { return };
     let [.., (_, net), _] = &ten_fabrics()[..] else { panic!("ten fabrics") };
-    let mut pair = Pair::new(&device, device.kernels().unwrap(), net, crumpled(net), pinned(net), 40_000);
-    assert!(pair.gpu.system().tables.chunks.len() >= 3);
-    for (what, difference, bound) in pair.differences() {
-        println!("{what} {difference:.1e}");
-        assert!(difference < bound, "{what} is off by {difference:.1e}");
+    for complete in [Room::on(&device).complete, 0.0] {
+        let room = Room { binding: 40_000, complete };
+        let mut pair = Pair::new(&device, device.kernels().unwrap(), net, crumpled(net), pinned(net), room);
+        let tables = &pair.gpu.system().tables;
+        assert!(tables.chunks.len() >= 3);
+        // A level hands on to the next chunk and further.
+        let later = tables.pattern.changes.levels.iter().flat_map(|level| &level.later);
+        assert!(later.filter(|([from, to], _)| from != to).count() > 2);
+        for (what, difference, bound) in pair.differences() {
+            println!("{what} {difference:.1e}");
+            assert!(difference < bound, "{what} is off by {difference:.1e}");
+        }
     }
 }
 
@@ -336,7 +347,7 @@ fn a_wrong_kernel_is_found() {
         ("hold", "v.x - s.x + h * v.y", "v.x - s.x - h * v.y", "residual"),
     ] {
         let kernels = Kernels::compile(&device, &spoilt(file, right, wrong)).unwrap();
-        let mut pair = Pair::new(&device, kernels, net, crumpled(net), pinned(net), ONE_CHUNK);
+        let mut pair = Pair::new(&device, kernels, net, crumpled(net), pinned(net), Room::on(&device));
         let found = pair.differences().into_iter().find(|(_, difference, bound)| difference >= bound);
         println!("{file}: {found:?}");
         assert_eq!(found.map(|(what, ..)| what), Some(shows), "{file}");

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod drawn;
+mod factor;
 mod failure;
 mod rest;
 mod scenes;

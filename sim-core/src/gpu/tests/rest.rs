@@ -9,6 +9,7 @@ use super::{device, spoilt, ten_fabrics};
 use crate::choice::{SharedGpu, SolverChoice};
 use crate::gpu::GpuSimulator;
 use crate::gpu::kernel::Kernels;
+use crate::gpu::pattern::Room;
 use crate::handover::Handover;
 use crate::material::Material;
 use crate::scene::Scene;
@@ -92,7 +93,7 @@ fn another_rest_shape_is_found() {
     let sources = spoilt("bend", "2.0 * yarn.bend * theta +", "2.2 * yarn.bend * theta +");
     let kernels = Kernels::compile(&device, &sources).unwrap();
     let from = Handover::new(&net, calm(), hanging(&net), net.laid_state()).unwrap();
-    let wrong = GpuSimulator::with(&device, kernels, 1 << 25, from).unwrap();
+    let wrong = GpuSimulator::with(&device, kernels, Room::on(&device), from).unwrap();
     let difference = apart(&right, &at_rest(name, wrong.into()).0);
     println!("{difference:.1e} m");
     assert!(difference > CLOSE, "{difference:e}");

@@ -1,9 +1,10 @@
 //! What surrounds the fabric, and the fabric against itself: kernels against the CPU.
 
-use super::agreement::{ONE_CHUNK, Pair, crumpled};
+use super::agreement::{Pair, crumpled};
 use super::{device, ten_fabrics};
 use crate::closed_mesh::ClosedMesh;
 use crate::closed_mesh::tests::cuboid;
+use crate::gpu::pattern::Room;
 use crate::motion::{Key, Motion};
 use crate::scene::{Clamp, Scene};
 use crate::{Body, Pin};
@@ -56,7 +57,8 @@ fn bodies_pins_and_clamps_hold_as_on_the_cpu() {
             motion: Motion::default(),
         };
         let scene = Scene { bodies, pins: vec![pin(4), pin(7)], clamps: vec![clamp], ..Scene::default() };
-        let mut pair = Pair::new(&device, device.kernels().unwrap(), net, state.clone(), scene, ONE_CHUNK);
+        let mut pair =
+            Pair::new(&device, device.kernels().unwrap(), net, state.clone(), scene, Room::on(&device));
         let touching = pair.stepper.add_bodies(&pair.now.state.clone(), &pair.scene.clone(), 0.0, 5e-3).len();
         assert!(touching >= count, "{name}: {touching}");
         for (what, difference, bound) in pair.differences() {
@@ -80,7 +82,8 @@ fn layers_press_each_other_as_on_the_cpu() {
             v.z -= 0.2;
         }
     }
-    let mut pair = Pair::new(&device, device.kernels().unwrap(), net, state, Scene::default(), ONE_CHUNK);
+    let mut pair =
+        Pair::new(&device, device.kernels().unwrap(), net, state, Scene::default(), Room::on(&device));
     let found = pair.differences();
     let tail = pair.stepper.system.matrix.tail.len();
     assert!(tail > 20, "{tail}");
