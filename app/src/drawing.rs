@@ -9,14 +9,15 @@ use render::{Drawing, Faces, Lines, Polygon, Segment};
 use sim_core::curves;
 use smallvec::SmallVec;
 use std::collections::HashMap;
-use stitch_mesh::ids::{EdgeId, FaceId};
+use stitch_mesh::cable::Cable;
+use stitch_mesh::ids::{EdgeId, FaceId, VertexId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh, Row};
 use stitch_mesh::mesh::PolygonMesh;
 use stitch_mesh::stitch::Stitch;
 use stitch_mesh::stitch_mesh::StitchMesh;
 
 /// What to show of a project.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
 pub enum Stage {
     /// The input mesh.
     Mesh,
@@ -182,7 +183,69 @@ pub fn stitch_drawing(
             let colors = stitch_colors(stitches, rows, colors);
             faces(mesh, shown, |f| colors[f])
         },
-        || shown_edges(mesh, shown).map(line).collect(),
+        || {
+            let crossings = stitches.cables().iter().flat_map(|cable| crossing(stitches, cable, shown));
+            shown_edges(mesh, shown).map(line).chain(crossings).collect()
+        },
     );
     Drawing { faces, lines: Lines { segments }, ..Drawing::default() }
+}
+
+/// A cable as knitters draw it: a line for each strand, from the stitches below to those above that it goes to; those further back are
+/// broken where the others cross them.
+fn crossing(stitches: &StitchMesh, cable: &Cable, shown: Shown<'_>) -> Vec<Segment> {
+    let mesh = stitches.mesh();
+    // The middles of the stitches below and above each edge.
+    let middles = |ends: &[VertexId]| {
+        let below = mesh.face(mesh.half_edge_between(ends[1], ends[0])?);
+        let above = mesh.face(mesh.half_edge_between(ends[0], ends[1])?);
+        (shown(below) || shown(above)).then(|| [below, above].map(|face| mesh.face_center(face)))
+    };
+    let Some(middles) = cable.path.windows(2).map(middles).collect::<Option<Vec<_>>>() else {
+        return Vec::new();
+    };
+    let loops = |strand: &u8| usize::from(cable.strands[usize::from(*strand)]);
+    // Where a strand begins among the loops when they stand in an order.
+    let first =
+        |order: &[u8], strand: u8| -> usize { order.iter().take_while(|s| **s != strand).map(loops).sum() };
+    let laid: Vec<u8> = (0..cable.strands.len() as u8).collect();
+    let mean = |from: usize, count: usize, side: usize| {
+        middles[from..from + count].iter().map(|m| m[side]).sum::<DVec3>() / count as f64
+    };
+    let line = |(depth, strand): (usize, &u8)| {
+        let count = loops(strand);
+        let ends = [mean(first(&laid, *strand), count, 0), mean(first(&cable.order, *strand), count, 1)];
+        let parts: &[[f64; 2]] = if depth == 0 { &[[0.0, 1.0]] } else { &[[0.0, 0.3], [0.7, 1.0]] };
+        parts.iter().map(move |part| Segment {
+            ends: part.map(|t| ends[0].lerp(ends[1], t).as_vec3()),
+            color: palette::CABLE,
+            width: 4.0,
+        })
+    };
+    cable.front.iter().enumerate().flat_map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cables_are_drawn_on_the_stitches() {
+        let size = stitch_mesh::edge_counts::StitchSize::of_width(3e-3);
+        let net = |left: bool| {
+            stitch_mesh::swatches::of_cable(&[(0, Cable::cross(vec![], 2, 2, left))], 5, size).unwrap()
+        };
+        let lines = |stitches: &StitchMesh| {
+            let drawing = stitch_drawing(stitches, &stitches.rows(), &|_| true, StitchColors::default());
+            let strands = drawing.lines.segments.into_iter().filter(|s| s.color == palette::CABLE);
+            strands.map(|s| (s.ends[1] - s.ends[0]).to_array()).collect::<Vec<_>>()
+        };
+        // The strand in front goes to its side in one line, the other is broken.
+        for (left, side) in [(true, -1.0), (false, 1.0)] {
+            let strands = lines(&net(left));
+            assert_eq!(strands.len(), 3);
+            assert!(strands[0][0] * side > 0.0 && strands[1][0] * side < 0.0 && strands[2][0] * side < 0.0);
+            assert!(strands.iter().all(|s| s[1] > 0.0), "upwards");
+        }
+    }
 }

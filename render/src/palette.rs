@@ -19,6 +19,8 @@ pub const UNLABELLED_FACE: [f32; 3] = hex(0xd9d5cc);
 pub const HOVERED: [f32; 3] = hex(0xffffff);
 /// What is selected.
 pub const SELECTED: [f32; 3] = hex(0xffb000);
+/// A strand of a cable.
+pub const CABLE: [f32; 3] = hex(0x5a1f6b);
 /// Yarn nobody has chosen a colour for: undyed wool.
 pub const YARN: [f32; 3] = hex(0xe4d6bd);
 

@@ -174,7 +174,7 @@ mod tests {
 
     /// What goes too far in a step without braces.
     fn unheld(stepper: &mut Stepper, now: &Stuck) -> Vec<Failure> {
-        let next = stepper.attempt(now, &scene(), 0.0, H, &Braces::new(0)).unwrap().0.state;
+        let next = stepper.attempt(now, &scene(), 0.0, H, &Braces::new(0)).unwrap().next.state;
         stepper.judge(&now.state, &next).unwrap()
     }
 
@@ -182,7 +182,7 @@ mod tests {
     fn held(stepper: &mut Stepper, now: &Stuck, failures: Vec<Failure>) {
         let mut braces = Braces::new(SEGMENTS_FOR_ONE * failures.len());
         braces.hold(&failures).unwrap();
-        let next = stepper.attempt(now, &scene(), 0.0, H, &braces).unwrap().0.state;
+        let next = stepper.attempt(now, &scene(), 0.0, H, &braces).unwrap().next.state;
         assert_eq!(stepper.judge(&now.state, &next), Ok(Vec::new()));
     }
 

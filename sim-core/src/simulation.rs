@@ -216,7 +216,7 @@ impl Simulation {
         self.go_on(|gpu| Ok(gpu.max_stretch()?), |cpu| Ok(max_stretch(cpu.model(), cpu.state())))
     }
 
-    /// What holds the fabric, or touches it, and how hard; on a GPU without the forces of bodies.
+    /// What holds the fabric, or touches it, and how hard.
     pub fn holds(&self) -> Vec<HoldFact> {
         match &self.on {
             On::Cpu(cpu) => cpu.holds(),

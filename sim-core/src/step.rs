@@ -8,7 +8,8 @@
 //! A step that goes wrong is thrown away and taken with half the time step; the state is replaced only by a step
 //! that went well. Wrong is: the matrix has no factorisation, a number is not finite, a segment loses more than half of its
 //! yarn, its ends move against each other by more than its length. Where that is a few segments, they are held and
-//! the step is solved again first (`brace.rs`).
+//! the step is solved again first (`brace.rs`). Wrong is, too, that more than a few segments turn so far that they stay too long
+//! (`overshoot.rs`).
 
 use crate::assembly::{Start, System};
 use crate::brace::{Braces, Excess, Failure};
@@ -20,7 +21,7 @@ use crate::local::Element;
 use crate::material::Material;
 use crate::materials::{Materials, Touch};
 use crate::model::{FROZEN, Model, SegmentTerm};
-use crate::overshoot::draw_back;
+use crate::overshoot::{draw_back, most_left};
 use crate::rigid::{self, Rotation};
 use crate::scene::Scene;
 use crate::solver::tail::Link;
@@ -51,6 +52,9 @@ pub enum Rejection {
     /// The ends of a segment would move against each other by more than its length.
     #[error("the ends of segment {0} move too far against each other")]
     Leaping(usize),
+    /// So many segments turn so far that they come out too long.
+    #[error("{0} segments turn too far")]
+    Overshooting(usize),
     /// More layers of the fabric meet than the GPU has room for.
     #[error("more layers of the fabric meet than there is room for")]
     Crowded,
@@ -91,6 +95,15 @@ pub(crate) struct Stuck {
     pub anchors: Anchors,
 }
 
+/// What came of a step.
+pub(crate) struct Attempt {
+    pub next: Stuck,
+    /// Of the bodies on the fabric [N].
+    forces: Vec<DVec3>,
+    /// Segments that turned too far.
+    left: usize,
+}
+
 impl Stepper {
     pub fn new(model: Model, materials: &Materials, method: Option<Method>) -> Self {
         let system = System::new(&model);
@@ -129,9 +142,12 @@ impl Stepper {
     pub fn step(&mut self, now: &Stuck, scene: &Scene, time_s: f64, h: f64) -> Result<Stuck, Rejection> {
         let mut braces = Braces::new(self.model.segments.len());
         loop {
-            let (next, forces) = self.attempt(now, scene, time_s, h, &braces)?;
+            let Attempt { next, forces, left } = self.attempt(now, scene, time_s, h, &braces)?;
             let failures = self.judge(&now.state, &next.state)?;
             if failures.is_empty() {
+                if left > most_left(self.model.segments.len()) {
+                    return Err(Rejection::Overshooting(left));
+                }
                 self.body_forces = forces;
                 return Ok(next);
             }
@@ -139,7 +155,7 @@ impl Stepper {
         }
     }
 
-    /// The state after a step with these braces, whether or not it may follow, and the forces of the bodies [N].
+    /// A step with these braces, whether or not it may follow.
     pub(crate) fn attempt(
         &mut self,
         now: &Stuck,
@@ -147,7 +163,7 @@ impl Stepper {
         time_s: f64,
         h: f64,
         braces: &Braces,
-    ) -> Result<(Stuck, Vec<DVec3>), Rejection> {
+    ) -> Result<Attempt, Rejection> {
         let mut watch = Watch::start();
         let state = &now.state;
         let rotation = rigid::rotation(&state.position, &state.velocity, &self.masses);
@@ -180,9 +196,9 @@ impl Stepper {
         }
         let mut next = advanced(state, velocity, rate, h);
         let forces = body_forces(scene, &touching, &next.velocity, h);
-        draw_back(&self.model, (&self.masses, &self.held), state, &mut next, h);
+        let left = draw_back(&self.model, (&self.masses, &self.held), state, &mut next, h);
         watch.lap(&mut self.costs, Stage::Rest);
-        Ok((Stuck { state: next, anchors }, forces))
+        Ok(Attempt { next: Stuck { state: next, anchors }, forces, left })
     }
 
     /// Compression from the forces just assembled, and the friction springs that it carries. Gives the moved anchors.

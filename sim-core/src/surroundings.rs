@@ -38,9 +38,18 @@ struct Run {
     reach: f64,
 }
 
-impl Stepper {
+/// What bodies have to do with of each node.
+#[derive(Clone, Copy)]
+pub(crate) struct Bulk<'a> {
+    /// [node_count] [kg]
+    pub masses: &'a [f64],
+    /// Distance that each keeps, [node_count] [m].
+    pub clearances: &'a [f64],
+}
+
+impl Bulk<'_> {
     /// The nodes in runs, with what each keeps off and how far it flies in a step of `h` [s].
-    fn runs(&self, state: &YarnState, h: f64) -> Vec<Run> {
+    fn runs(self, state: &YarnState, h: f64) -> Vec<Run> {
         let count = state.position.len();
         let run = |first: usize| {
             let nodes = first..(first + RUN).min(count);
@@ -56,8 +65,8 @@ impl Stepper {
         (0..count).step_by(RUN).map(run).collect()
     }
 
-    /// Adds the bodies as they are at the end of the step of `h` from `time_s` on [s].
-    pub fn add_bodies(&mut self, state: &YarnState, scene: &Scene, time_s: f64, h: f64) -> Vec<Touching> {
+    /// Contacts in `state` with the bodies as they are at the end of the step of `h` from `time_s` on [s].
+    pub fn touching(self, state: &YarnState, scene: &Scene, time_s: f64, h: f64) -> Vec<Touching> {
         let mut touching = Vec::new();
         let runs = if scene.bodies.is_empty() { Vec::new() } else { self.runs(state, h) };
         for (index, body) in scene.bodies.iter().enumerate() {
@@ -73,14 +82,29 @@ impl Stepper {
                 if gap + h * v.dot(normal).min(surface.dot(normal)) >= 0.0 {
                     continue;
                 }
-                self.add_point(node, &contact, x, h);
                 // It is pressed as deep as it is in the surface now, not as this leaves it or comes upon it in the step.
                 let pressed = gap + h * surface.dot(normal);
                 let drag = contact.drag((pressed, normal), v - surface, mass, h);
+                touching.push(Touching { body: index, node, gap, normal, stiffness, drag, surface });
+            }
+        }
+        touching
+    }
+}
+
+impl Stepper {
+    /// Adds the bodies as they are at the end of the step of `h` from `time_s` on [s].
+    pub fn add_bodies(&mut self, state: &YarnState, scene: &Scene, time_s: f64, h: f64) -> Vec<Touching> {
+        let bulk = Bulk { masses: &self.masses, clearances: &self.clearances };
+        let touching = bulk.touching(state, scene, time_s, h);
+        for of_body in touching.chunk_by(|a, b| a.body == b.body) {
+            let body = &Placed::new(&scene.bodies[of_body[0].body], time_s, h);
+            for &Touching { node, normal, stiffness, drag, surface, .. } in of_body {
+                let contact = BodyContact { body, clearance: self.clearances[node], stiffness };
+                self.add_point(node, &contact, state.position[node], h);
                 let n = normal.to_array();
                 self.add_block(node, |i, j| h * drag * (f64::from(u8::from(i == j)) - n[i] * n[j]));
                 self.push(node, h * drag * (surface - surface.dot(normal) * normal));
-                touching.push(Touching { body: index, node, gap, normal, stiffness, drag, surface });
             }
         }
         touching

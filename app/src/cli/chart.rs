@@ -13,11 +13,18 @@ pub fn run(project: &Path, output: &Path, rows: Option<[usize; 2]>, print: Outpu
     let name = project.display().to_string();
     let project = Project::open(project)?;
     let stitches = &project.knitted().context(name.clone())?.stitches;
-    let mut courses = Course::piece(stitches, &stitches.rows());
+    let all = stitches.rows();
+    let mut courses = Course::piece(stitches, &all);
+    // What is worked on after a division, or sewn on.
+    let others = all.len() - courses.len().min(all.len());
+    let other_parts = match others {
+        0 => String::new(),
+        n => format!("; {n} more rows are in other parts, which the window charts when they are selected"),
+    };
     if let Some([first, last]) = rows {
         if last >= courses.len() {
             bail!(
-                "{name}: there are no rows {first}–{last}: the piece has rows 0–{}",
+                "{name}: there are no rows {first}–{last}: the piece has rows 0–{}{other_parts}",
                 courses.len().saturating_sub(1)
             );
         }
@@ -25,7 +32,7 @@ pub fn run(project: &Path, output: &Path, rows: Option<[usize; 2]>, print: Outpu
         courses.drain(..first);
     }
     let chart = charts::write(stitches, &courses, output).context(name)?;
-    let facts = json!({"file": output, "columns": chart.columns, "rows": chart.rows.len()});
-    print.print(&facts, &format!("{} columns, {} rows", chart.columns, chart.rows.len()));
+    let facts = json!({"file": output, "columns": chart.columns, "rows": chart.rows.len(), "rows_in_other_parts": others});
+    print.print(&facts, &format!("{} columns, {} rows{other_parts}", chart.columns, chart.rows.len()));
     Ok(())
 }

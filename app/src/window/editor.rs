@@ -5,6 +5,7 @@
 
 use super::chart::ChartView;
 use super::navigation::Navigation;
+use super::panels::leaving::{Destination, Leaving};
 use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
 use super::search::Search;
@@ -88,6 +89,9 @@ pub struct Editor {
     generation: u64,
     framed: bool,
     pub(super) error: Option<String>,
+    /// What is to be done once it is clear what happens to work that has not been saved.
+    pub(super) leaving: Option<Leaving>,
+    is_closed: bool,
 }
 
 impl Editor {
@@ -101,10 +105,7 @@ impl Editor {
         screen: Option<Screen>,
         wake: impl Fn() + Send + Sync + Clone + 'static,
     ) -> Result<Self> {
-        let stage = match (&project.fabric, project.labelled.labels().iter().any(Option::is_some)) {
-            (Some(_), _) => Stage::Yarn,
-            (None, _) => Stage::Labels,
-        };
+        let stage = first_stage(&project);
         let session = Session::spawn(project, path, Arc::new(wake.clone()))?;
         let (view, survey) = (session.latest(), session.survey());
         let newest = Newest::default();
@@ -156,6 +157,8 @@ impl Editor {
             generation: 0,
             framed: false,
             error: None,
+            leaving: None,
+            is_closed: false,
         })
     }
 
@@ -174,9 +177,15 @@ impl Editor {
         self.show_news();
         super::viewport::show(self, ui);
         super::search::show(self, ui.ctx());
+        panels::leaving::show(self, ui.ctx());
         if self.session.is_busy() {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
         }
+    }
+
+    /// The stage that is shown.
+    pub fn stage(&self) -> Stage {
+        self.stage
     }
 
     /// The project as last seen.
@@ -186,7 +195,9 @@ impl Editor {
 
     /// The newest snapshot of the simulation of this project's yarn.
     pub fn yarn(&self) -> Option<&Snapshot> {
-        self.strung.as_ref().map(|s| &*s.snapshot)
+        let snapshot = self.strung.as_ref().map(|s| &*s.snapshot);
+        // What is still on the screen may be yarn of a net that has been replaced since.
+        snapshot.filter(|s| s.generation == self.generation)
     }
 
     /// Steps of the relaxation that is on the screen just now.
@@ -203,6 +214,12 @@ impl Editor {
 
     /// Sends a request, with the yarn as it is just now.
     pub(super) fn request(&mut self, request: Request) {
+        if let Request::Do(command) | Request::Amend(command) = &request
+            && !matches!(command, Command::RelaxMesh { .. })
+        {
+            // Whoever edits stitches wants to see them.
+            self.set_strained(false);
+        }
         let moved = self.yarn().filter(|s| s.moved);
         let yarn = moved.zip(self.loaded.as_ref()).map(|(s, from)| Moved {
             from: Arc::clone(from),
@@ -211,6 +228,35 @@ impl Editor {
             state: Arc::new(s.state.clone()),
         });
         self.session.send(request, yarn);
+    }
+
+    /// Leaves the document for something else, or asks first what is to happen to it.
+    pub(super) fn leave(&mut self, to: Destination) {
+        if self.view.is_changed {
+            self.leaving = Some(Leaving { to, is_saving: false });
+        } else {
+            self.go(to);
+        }
+    }
+
+    /// Leaves the document as it is.
+    pub(super) fn go(&mut self, to: Destination) {
+        self.leaving = None;
+        match to {
+            Destination::Other(request) => self.request(request),
+            Destination::Chosen => self.session.ask_for_file(),
+            Destination::Closed => self.is_closed = true,
+        }
+    }
+
+    /// Somebody wants to close the window.
+    pub fn close(&mut self) {
+        self.leave(Destination::Closed);
+    }
+
+    /// Whether it may be closed now.
+    pub fn is_closed(&self) -> bool {
+        self.is_closed
     }
 
     pub(super) fn act(&mut self, command: Command) {
@@ -275,12 +321,17 @@ impl Editor {
             if view.path != self.view.path {
                 let kept = std::mem::replace(&mut self.panel, panels::State::of(&view));
                 (self.panel.aspect, self.panel.lab) = (kept.aspect, kept.lab);
-                self.framed = self.framed
-                    && self.view.path.is_none()
-                    && view.project.labelled == self.view.project.labelled;
             }
             self.error = view.message.clone().err();
             self.forget_parts(&view.project);
+            if view.opened != self.view.opened {
+                self.go_to(first_stage(&view.project));
+                self.set_strained(false);
+                self.framed = false;
+            } else if view.project.fabric.is_none() {
+                // Stitches that were taken back leave the labels they were made from.
+                self.go_to(self.stage.min(Stage::Labels));
+            }
             self.view = view;
         }
         let survey = self.session.survey();
@@ -403,4 +454,9 @@ impl Editor {
         self.act(Command::Tessellate { width_mm: changed.then_some(self.panel.width_mm) });
         self.go_to(Stage::Stitches);
     }
+}
+
+/// The stage that one begins with.
+fn first_stage(project: &Project) -> Stage {
+    if project.fabric.is_some() { Stage::Yarn } else { Stage::Labels }
 }

@@ -104,7 +104,10 @@ impl ApplicationHandler<Wake> for Application {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(shown) = &mut self.shown else { return };
         match &event {
-            WindowEvent::CloseRequested => return events.exit(),
+            WindowEvent::CloseRequested => {
+                shown.editor.close();
+                shown.window.request_redraw();
+            }
             WindowEvent::Resized(size) => shown.resize(size.width, size.height),
             WindowEvent::RedrawRequested => {
                 self.repaint_at = match shown.draw() {
@@ -114,6 +117,9 @@ impl ApplicationHandler<Wake> for Application {
                         return events.exit();
                     }
                 };
+                if shown.editor.is_closed() {
+                    events.exit();
+                }
                 return; // egui-winit answers this event with "repaint", which would never end
             }
             _ => {}

@@ -30,13 +30,15 @@ enum ShownYarn<'a> {
 }
 
 impl Editor {
-    /// Puts the stage on the screen. Stitches that have only changed their kind keep their polygons.
+    /// Puts the stage on the screen. Stitches that have only changed their kind keep their polygons and lines.
     pub(super) fn show_stage(&mut self) {
         let stage = self.shown_stage();
         let fabric = self.view.project.fabric.as_ref().filter(|_| stage == Stage::Stitches);
         let drawn = fabric.map(|f| (f.stitches.clone(), self.selection().hidden.clone()));
         let same = match (&drawn, &self.drawn) {
-            (Some((new, hidden)), Some((old, were))) => new.has_mesh_of(old) && hidden == were,
+            (Some((new, hidden)), Some((old, were))) => {
+                new.has_mesh_of(old) && new.cables() == old.cables() && hidden == were
+            }
             _ => false,
         };
         self.drawn = drawn;

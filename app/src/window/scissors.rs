@@ -16,8 +16,8 @@ const REACH: f32 = 1.3;
 impl Editor {
     /// Cuts the yarn that a ray meets first.
     pub(super) fn cut_at(&mut self, ray: Ray) {
-        let Some(strung) = self.strung.clone() else { return };
-        match met(&self.shown_yarn(&strung.snapshot), ray) {
+        let Some(snapshot) = self.yarn() else { return };
+        match met(&self.shown_yarn(snapshot), ray) {
             Some(visit) => self.act(Command::CutYarnAt { visit: visit.0 }),
             None => self.error = Some("there is no yarn under the scissors".into()),
         }

@@ -7,7 +7,7 @@
 //! another thread and its result is simply not taken over: the document is as it was, at once. Work that can be watched, a
 //! relaxation, ends with its next step; other work runs out with nobody waiting for it.
 
-use super::view::{Survey, View};
+use super::view::{Standing, Survey, View};
 use crate::bundled::Bundled;
 use crate::charts;
 use crate::command::{Command, write_script};
@@ -32,6 +32,9 @@ use std::time::{Duration, Instant};
 /// How often work that goes on is looked at, for whether somebody has cancelled it.
 const LOOK: Duration = Duration::from_millis(10);
 
+/// Said where no file was chosen, perhaps as the system has no dialog.
+const NOTHING_CHOSEN: &str = "No file was chosen. A path in the field beside Open… and Enter open one, too";
+
 /// What a session can be asked to do.
 #[derive(Clone, Debug)]
 pub enum Request {
@@ -49,6 +52,8 @@ pub enum Request {
     Open(PathBuf),
     /// Begin anew with what comes with the program.
     Begin(&'static Bundled),
+    /// Only tell something.
+    Say(&'static str),
     /// Take the scene of a name or a file.
     Scene(String),
     /// Save the project.
@@ -62,6 +67,14 @@ pub enum Request {
 }
 
 impl Request {
+    /// Whether what it does to the document is lost unless that is saved.
+    fn changes(&self) -> bool {
+        matches!(
+            self,
+            Self::Do(_) | Self::Amend(_) | Self::Undo | Self::Redo | Self::GoTo(_) | Self::Scene(_)
+        )
+    }
+
     /// What is going on while it is carried out.
     fn doing(&self) -> String {
         match self {
@@ -72,6 +85,7 @@ impl Request {
             Self::Open(path) => format!("Open {}", path.display()),
             Self::Begin(bundled) => format!("Knit {}", bundled.name),
             Self::Scene(name) => format!("Scene {name}"),
+            Self::Say(_) => "Open".into(),
             Self::Save(path)
             | Self::SaveScript(path)
             | Self::SaveInstructions(path, _)
@@ -133,9 +147,7 @@ impl Session {
         let work = Arc::new(Mutex::new(None));
         let mut worker = Worker {
             document: Document::new(project),
-            path,
-            revision: 0,
-            placed: 0,
+            standing: Standing { path, ..Standing::default() },
             work: Arc::clone(&work),
             latest: None,
             wake: Arc::clone(&wake),
@@ -173,15 +185,14 @@ impl Session {
         let _ = self.requests.send((request, yarn));
     }
 
-    /// Shows the system's file dialog, beside the window, and opens what is chosen. Where there is no dialog nothing happens.
+    /// Shows the system's file dialog, beside the window, and opens what is chosen. Where there is no dialog it is as if nothing were.
     pub fn ask_for_file(&self) {
         let (requests, waiting) = (self.requests.clone(), Arc::clone(&self.waiting));
         let ask = move || {
             let dialog = rfd::FileDialog::new().add_filter("Projects and meshes", &["purl", "obj"]);
-            if let Some(path) = dialog.pick_file() {
-                waiting.fetch_add(1, Ordering::Release);
-                let _ = requests.send((Request::Open(path), None));
-            }
+            let chosen = dialog.pick_file().map_or(Request::Say(NOTHING_CHOSEN), Request::Open);
+            waiting.fetch_add(1, Ordering::Release);
+            let _ = requests.send((chosen, None));
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(ask) {
             tracing::warn!("no file dialog: {error}");
@@ -218,9 +229,7 @@ impl Session {
 
 struct Worker {
     document: Document,
-    path: Option<PathBuf>,
-    revision: u64,
-    placed: u64,
+    standing: Standing,
     work: Arc<Mutex<Option<Work>>>,
     latest: Option<Arc<View>>,
     wake: Wake,
@@ -235,10 +244,12 @@ impl Worker {
         }
         let resets = |document: &Document| document.done().filter(|c| **c == Command::ResetYarn).count();
         let before = resets(&self.document);
+        let changes = request.changes();
         let message = self.try_to(request).map_err(|e| format!("{e:#}"));
         // Laid anew, or that taken back: the document has put the yarn somewhere itself.
-        self.placed += u64::from(resets(&self.document) != before);
-        self.revision += 1;
+        self.standing.placed += u64::from(resets(&self.document) != before);
+        self.standing.is_changed |= changes && message.is_ok();
+        self.standing.revision += 1;
         self.view(message)
     }
 
@@ -264,16 +275,17 @@ impl Worker {
             }
             Request::Open(path) => {
                 let file = path.clone();
-                self.document = Document::new(self.unless_cancelled(move || open_any(&file))?);
+                let project = self.unless_cancelled(move || open_any(&file))?;
                 let message = format!("Opened {}", path.display());
-                self.path = Some(path);
+                self.take_up(project, path);
                 Ok(message)
             }
             Request::Begin(bundled) => {
-                self.document = Document::new(self.unless_cancelled(|| bundled.knitted(bundled.width))?);
-                self.path = Some(PathBuf::from(bundled.name).with_extension("purl"));
+                let project = self.unless_cancelled(|| bundled.knitted(bundled.width))?;
+                self.take_up(project, PathBuf::from(bundled.name).with_extension("purl"));
                 Ok(format!("Begun: {}", bundled.name))
             }
+            Request::Say(message) => Ok(message.into()),
             Request::Scene(name) => {
                 let project = self.document.project().clone();
                 // A mesh in it takes its time.
@@ -284,7 +296,7 @@ impl Worker {
             Request::Save(path) => {
                 self.document.project().save(&path)?;
                 let message = format!("Saved {}", path.display());
-                self.path = Some(path);
+                (self.standing.path, self.standing.is_changed) = (Some(path), false);
                 Ok(message)
             }
             Request::SaveInstructions(path, faces) => {
@@ -303,11 +315,18 @@ impl Worker {
         }
     }
 
+    /// Goes on with another project.
+    fn take_up(&mut self, project: Project, path: PathBuf) {
+        self.document = Document::new(project);
+        self.standing.opened += 1;
+        (self.standing.path, self.standing.is_changed) = (Some(path), false);
+    }
+
     fn apply(&mut self, command: Command, amends: bool) -> Result<String> {
         let (doing, before) = (command.clone(), self.document.project().clone());
         let (work, wake) = (Arc::clone(&self.work), Arc::clone(&self.wake));
         let cancelled = lock(&self.work).as_ref().map(|w| Arc::clone(&w.cancelled)).unwrap_or_default();
-        let (revision, mut steps) = (self.revision, 0);
+        let (revision, mut steps) = (self.standing.revision, 0);
         let mut watch = move |relaxation: &MeshRelaxation, _: &StepFacts| {
             steps += 1;
             let positions = relaxation.positions().iter().map(|p| p.as_vec3()).collect();
@@ -356,12 +375,7 @@ impl Worker {
     }
 
     fn view(&mut self, message: Result<String, String>) -> Arc<View> {
-        let view = Arc::new(View::of(
-            &self.document,
-            (self.revision, self.placed, self.path.clone()),
-            message,
-            self.latest.as_deref(),
-        ));
+        let view = Arc::new(View::of(&self.document, self.standing.clone(), message, self.latest.as_deref()));
         self.latest = Some(Arc::clone(&view));
         view
     }

@@ -16,6 +16,10 @@ pub struct View {
     /// Counts how often the document itself has put the yarn somewhere (laid it anew, or took that back); otherwise the
     /// simulation knows best where it is.
     pub placed: u64,
+    /// Counts how often another document has taken its place.
+    pub opened: u64,
+    /// Whether there is something in it that has not been saved.
+    pub is_changed: bool,
     /// The project.
     pub project: Project,
     /// Rows of the labelled mesh.
@@ -30,6 +34,16 @@ pub struct View {
     pub undone: Vec<String>,
     /// What the last request came to: done, or why not.
     pub message: Result<String, String>,
+}
+
+/// What the session knows of a document besides itself; see [`View`].
+#[derive(Clone, Debug, Default)]
+pub(super) struct Standing {
+    pub revision: u64,
+    pub placed: u64,
+    pub opened: u64,
+    pub is_changed: bool,
+    pub path: Option<PathBuf>,
 }
 
 /// Facts about a project: they take longer to find than most edits, so they come after the view.
@@ -78,7 +92,7 @@ impl View {
     /// A view of `document`. What `before` has found about the same meshes is taken over.
     pub(super) fn of(
         document: &Document,
-        (revision, placed, path): (u64, u64, Option<PathBuf>),
+        Standing { revision, placed, opened, is_changed, path }: Standing,
         message: Result<String, String>,
         before: Option<&Self>,
     ) -> Self {
@@ -98,6 +112,8 @@ impl View {
         Self {
             revision,
             placed,
+            opened,
+            is_changed,
             labelled_rows,
             fabric_rows,
             project,

@@ -1,7 +1,8 @@
 //! The buffers of a net on the device: those of all of it, and those of each chunk.
 
+use super::constants::SUM_SPAN;
 use super::device::{GpuDevice, LIMITS};
-use super::layout::{Body as BodyRecord, Contact, Params, Pin as PinRecord, Rigid, SUM_SPAN, Status};
+use super::layout::{Body as BodyRecord, Contact, Params, Pin as PinRecord, Rigid, Status};
 use super::tables::{Chunk, Tables, yarns};
 use crate::material::Material;
 use std::collections::BTreeMap;
@@ -77,10 +78,10 @@ impl Buffers {
             ("elements", 16 * u64::from(elements)),
             ("rigid", size_of::<Rigid>() as u64),
             ("status", size_of::<Status>() as u64),
-            ("worst", 4),
+            ("faults", 8),
             ("touching", 4),
             ("shift", 16),
-            ("factor_before", 16),
+            ("factor_elsewhere", 16),
         ] {
             whole.insert(name, gpu.buffer(name, bytes));
         }

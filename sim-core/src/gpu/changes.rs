@@ -6,7 +6,8 @@
 //! largest separators, to a few workgroups. WGSL has no portable float atomics, so a workgroup has a *tile*, some rows of one front, and takes what
 //! all sources of the level have for it one after the other.
 
-use super::layout::{Source, TILE, Tile};
+use super::constants::TILE;
+use super::layout::{Group, Source, Tile};
 use super::pattern::{Pattern, add_to};
 use std::ops::Range;
 
@@ -27,6 +28,14 @@ pub(crate) struct Level {
     pub below: Vec<(usize, Range<u32>)>,
     /// Tiles of later fronts; of each run the chunks of sources and fronts.
     pub later: Vec<([usize; 2], Range<u32>)>,
+    /// Operations of all of it, the diagonal blocks included.
+    pub operations: u64,
+}
+
+/// What the elimination of a group takes, a multiplication and an addition being two: C⁻¹, Q, and half of Q Qᵀ.
+fn operations(group: &Group) -> u64 {
+    let (n, m) = (u64::from(group.size), u64::from(group.row_count));
+    2 * (n * n * n / 3 + n * n * m + n * m * m / 2)
 }
 
 /// A tile of a front that a source changes: the chunks of both, the group and the number of the tile in its front.
@@ -53,27 +62,23 @@ impl Changes {
             let mut changed = Vec::new();
             for (chunk, range) in runs {
                 for place in range.clone() {
+                    level.operations += operations(&pattern.groups[place as usize]);
                     changes.divide(pattern, *chunk, place, &mut level);
                     changes.share(pattern, group_at[place as usize], &mut changed);
                 }
             }
             changed.sort_by_key(|(place, _)| *place);
             for of_tile in changed.chunk_by(|(a, _), (b, _)| a == b) {
-                let Place { chunks, group, tile } = of_tile[0].0;
+                let Place { chunks, group, .. } = of_tile[0].0;
                 add_to(&mut level.later, chunks, changes.tiles.len() as u32);
                 let source = changes.sources.len() as u32;
                 changes.sources.extend(of_tile.iter().map(|(_, source)| *source));
                 let source_end = changes.sources.len() as u32;
-                changes.tiles.push(Tile { group, row: tile * TILE, row_count: TILE, source, source_end });
+                changes.tiles.push(Tile { group, source, source_end, ..Tile::default() });
             }
             changes.levels.push(level);
         }
         changes
-    }
-
-    /// Whether each list of rows has at most so many.
-    pub fn fit(&self, most: u64) -> bool {
-        self.shared_rows.iter().all(|rows| rows.len() as u64 <= most)
     }
 
     /// Adds the tiles below the diagonal block of a group.
@@ -83,7 +88,7 @@ impl Changes {
         for row in (group.size..height).step_by(TILE as usize) {
             add_to(&mut level.below, chunk, self.tiles.len() as u32);
             let row_count = TILE.min(height - row);
-            self.tiles.push(Tile { group: place, row, row_count, source: 0, source_end: 0 });
+            self.tiles.push(Tile { group: place, row, row_count, ..Tile::default() });
         }
     }
 
@@ -116,12 +121,12 @@ impl Changes {
                 };
                 shared_rows.push(row | place << 16);
             }
-            let before = u32::from(chunks[0] != chunks[1]);
+            let elsewhere = u32::from(chunks[0] != chunks[1]);
             let mut row = first;
             for tile in shared_rows[first as usize..].chunk_by(|a, b| (a >> 16) / TILE == (b >> 16) / TILE) {
                 let row_count = tile.len() as u32;
                 let source =
-                    Source { group: from, before, column: first, column_count: columns, row, row_count };
+                    Source { group: from, elsewhere, column: first, column_count: columns, row, row_count };
                 changed.push((Place { chunks, group: to, tile: (tile[0] >> 16) / TILE }, source));
                 row += row_count;
             }

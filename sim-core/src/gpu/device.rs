@@ -106,7 +106,8 @@ impl GpuDevice {
     /// Numbers that a binding may have.
     pub(crate) fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
-        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(FARTHEST) / 4
+        // Buffers are made of sixteens of bytes.
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(FARTHEST) / 16 * 4
     }
 
     /// The kernels, compiled.

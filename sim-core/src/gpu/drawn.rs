@@ -12,8 +12,9 @@
 //! the CPU come 20 bytes for every [`RUN`] spans: where they are.
 
 use super::GpuError;
+use super::constants::{NARROW, NONE, WIDE};
 use super::kernel::{Kernels, Task};
-use super::layout::{Bound, Drawn as Point, Lay, NARROW, NONE, Part, WIDE};
+use super::layout::{Bound, Drawn as Point, Lay, Part};
 use super::system::System;
 use crate::materials::Materials;
 use crate::model::Model;

@@ -1,9 +1,7 @@
 //! The elements of a net, chunk by chunk, and the lists of them around nodes and visits.
 
-use super::layout::{
-    BEND_OUT, Bend, OF_BEND, OF_SEGMENT, OF_SHEAR, OF_WRAP, SEGMENT_OUT, Segment, Shear, Stacked, WRAP_OUT,
-    Wrap,
-};
+use super::constants::{BEND_OUT, OF_BEND, OF_SEGMENT, OF_SHEAR, OF_WRAP, SEGMENT_OUT, WRAP_OUT};
+use super::layout::{Bend, Segment, Shear, Stacked, Wrap};
 use super::tables::{Chunk, Tables};
 use crate::model::{FROZEN, Model, Stencil};
 use crate::take_in::TakeIn;

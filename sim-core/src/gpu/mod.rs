@@ -47,6 +47,7 @@
 
 mod buffers;
 mod changes;
+mod constants;
 mod device;
 mod drawn;
 mod elements;
@@ -54,6 +55,7 @@ mod exchange;
 mod kernel;
 mod layout;
 mod pattern;
+mod report;
 mod shift;
 mod simulator;
 mod stages;

@@ -21,8 +21,9 @@
 //! every device has, 57 118 loops have 15, and a level several dispatches: 4 200 in a factorisation, and 890 each way.)
 
 use super::changes::Changes;
+use super::constants::{MOST_GROUP, RIGID};
 use super::device::GpuDevice;
-use super::layout::{Group, MOST_GROUP, NONE, RIGID};
+use super::layout::Group;
 use crate::model::Model;
 use crate::solver::dissection::{self, Sizes, dissected};
 use crate::solver::groups::groups;
@@ -58,6 +59,8 @@ pub(crate) struct Pattern {
     /// Of each level its records, chunk by chunk.
     pub levels: Vec<Vec<(usize, Range<u32>)>>,
     pub changes: Changes,
+    /// Whether nothing of the factor is dropped.
+    pub is_complete: bool,
     /// Numbers in the factor of each chunk.
     pub factor_counts: Vec<u64>,
 }
@@ -84,7 +87,7 @@ impl Pattern {
     pub fn new(model: &Model, widths: &[u32], room: Room) -> Self {
         if BY_PACKED * dissection::bytes(model.net.nodes.len()) <= room.complete {
             let complete = Self::filled(model, widths, room.binding, Fill::Always);
-            if complete.changes.fit(room.binding) {
+            if complete.fits(room.binding) {
                 return complete;
             }
         }
@@ -134,6 +137,7 @@ impl Pattern {
             row_dofs: Vec::new(),
             levels: Vec::new(),
             changes: Changes::default(),
+            is_complete: fill == Fill::Always,
             factor_counts: Vec::new(),
         };
         pattern.cut_into_chunks(widths, most);
@@ -141,6 +145,15 @@ impl Pattern {
         pattern.lay_out();
         pattern.changes = Changes::new(&pattern);
         pattern
+    }
+
+    /// Whether what is not in chunks fits into bindings of so many numbers, and rows of fronts into half a word.
+    fn fits(&self, most: u64) -> bool {
+        let Changes { tiles, sources, shared_rows, .. } = &self.changes;
+        let words = [size_of_val(&tiles[..]), size_of_val(&sources[..]), size_of_val(&self.row_dofs[..])];
+        let rows = shared_rows.iter().map(|rows| size_of_val(&rows[..]));
+        words.into_iter().chain(rows).all(|bytes| bytes as u64 / 4 <= most)
+            && self.groups.iter().all(|group| group.size + group.row_count <= 0xffff)
     }
 
     /// Number of unknowns of a node.
@@ -252,11 +265,6 @@ impl Pattern {
             }
         }
         incoming
-    }
-
-    /// Row of `other` in the front of the group of `node`, or NONE.
-    pub fn front_of(&self, fronts: &BTreeMap<u32, u32>, other: u32) -> u32 {
-        fronts.get(&other).copied().unwrap_or(NONE)
     }
 }
 

@@ -1,23 +1,23 @@
 //! The simulator on the GPU: what `simulator.rs` does on the CPU.
 
 use super::GpuError;
+use super::constants::{NONE, REJECTED_LEAPING, REJECTED_SHRINKING};
 use super::device::GpuDevice;
 use super::drawn::Drawn;
 use super::kernel::Kernels;
-use super::layout::{NONE, Params, REJECTED_LEAPING, REJECTED_SHRINKING, Status};
+use super::layout::{Params, Status};
 use super::pattern::Room;
 use super::shift::Shift;
 use super::surroundings::fit;
 use super::system::{System, Verdict};
 use super::tables::Tables;
 use crate::costs::Costs;
-use crate::facts::{self, Facts};
-use crate::forces::{Forces, HoldFact};
 use crate::friction::{Anchors, Stack};
 use crate::handover::Handover;
 use crate::material::Material;
 use crate::materials::Materials;
 use crate::model::{Model, SegmentTerm};
+use crate::overshoot::{far, most_left};
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::simulator::{GROWTH, MOST_HALVINGS, SimError, StepReport, model_after};
@@ -57,10 +57,10 @@ pub struct GpuSimulator {
     pub(super) fields: Vec<(usize, u32)>,
     pub(super) step: f64,
     pub(super) progress: Progress,
-    iterations: u32,
+    pub(super) iterations: u32,
     shift: Shift,
     /// What the steps have cost; none where nobody wants to know.
-    costs: Option<Costs>,
+    pub(super) costs: Option<Costs>,
     /// What lays out the yarn for a renderer, once one wants it; none where it can't.
     pub(super) drawn: Option<Option<Drawn>>,
     /// The state as last read back.
@@ -223,13 +223,34 @@ impl GpuSimulator {
         self.place_surroundings()?;
         self.is_read = false;
         let mut verdict = self.solve()?;
-        while verdict.status.solved != 1 && self.shift.failed() {
-            verdict = self.solve()?;
+        if !self.system.tables.pattern.is_complete {
+            while verdict.status.solved != 1 && self.shift.failed() {
+                verdict = self.solve()?;
+            }
+            if verdict.status.solved == 1 {
+                self.shift.solved_in(verdict.iterations());
+            }
         }
-        if verdict.status.solved == 1 {
-            self.shift.solved_in(verdict.iterations());
+        Ok(self.rejection(&verdict))
+    }
+
+    /// Why a step has to be thrown away, if it has.
+    fn rejection(&self, verdict: &Verdict) -> Option<Rejection> {
+        if !self.system.had_room(verdict) {
+            return Some(Rejection::Crowded);
         }
-        Ok(if self.system.had_room(&verdict) { rejection(&verdict) } else { Some(Rejection::Crowded) })
+        if verdict.status.solved != 1 {
+            return Some(Rejection::Solve(SolveError::NotConverged));
+        }
+        let (segment, left) = ((verdict.worst / 4) as usize, verdict.left as usize);
+        match (verdict.worst, verdict.worst % 4) {
+            (NONE, _) => {
+                (left > most_left(self.model.segments.len())).then_some(Rejection::Overshooting(left))
+            }
+            (_, REJECTED_SHRINKING) => Some(Rejection::Shrinking(segment)),
+            (_, REJECTED_LEAPING) => Some(Rejection::Leaping(segment)),
+            _ => Some(Rejection::NotFinite),
+        }
     }
 
     /// A step with the shift that there is, whether or not it may follow.
@@ -276,6 +297,8 @@ impl GpuSimulator {
             shift: self.shift.part(),
             body_count: bodies.len() as u32,
             touching: 2.0 * widest,
+            far: far(self.model.segments.len()) as f32,
+            most_left: most_left(self.model.segments.len()) as u32,
             ..Params::default()
         })
     }
@@ -325,97 +348,10 @@ impl GpuSimulator {
         }
     }
 
-    /// What there is to report of the simulation so far; the forces of bodies are left out.
-    ///
-    /// # Errors
-    /// The GPU fails.
-    pub fn facts(&mut self) -> Result<Facts, GpuError> {
-        self.state()?;
-        let Self { model, materials, state, scene, progress, .. } = &*self;
-        Ok(Facts {
-            solver: "gpu".to_owned(),
-            steps: progress.steps,
-            time_s: progress.time_s,
-            kinetic_j: model.kinetic_energy(materials, state),
-            holds: self.holds(),
-            rejected_steps: progress.rejected,
-            ..facts::measure(model, materials, (scene, progress.scene_time_s), state)
-        })
-    }
-
-    /// Largest strain of a segment now.
-    ///
-    /// # Errors
-    /// The GPU fails.
-    pub fn max_stretch(&mut self) -> Result<f64, GpuError> {
-        self.state()?;
-        Ok(facts::max_stretch(&self.model, &self.state))
-    }
-
-    /// Forces of pins and clamps on the fabric in the state that was last read back.
-    pub fn holds(&self) -> Vec<HoldFact> {
-        let time_s = self.read_at.scene_time_s;
-        Forces::of_springs(&self.scene, &self.state.position, time_s).in_words(&self.scene)
-    }
-
-    /// Root-mean-square speed of the yarn [m/s].
-    ///
-    /// # Errors
-    /// The GPU fails.
-    pub fn speed(&mut self) -> Result<f64, GpuError> {
-        self.state()?;
-        Ok(self.model.speed(&self.materials, &self.state))
-    }
-
-    /// The net.
-    pub fn net(&self) -> &Arc<YarnNet> {
-        &self.model.net
-    }
-
-    /// The materials of its yarns.
-    pub fn materials(&self) -> &Materials {
-        &self.materials
-    }
-
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// How far the simulation has come.
-    pub fn progress(&self) -> &Progress {
-        &self.progress
-    }
-
     /// Goes on at a time of the scene [s].
     pub fn resume_at(&mut self, scene_time_s: f64) {
         self.progress.scene_time_s = scene_time_s;
         self.read_at.scene_time_s = scene_time_s;
-    }
-
-    /// Iterations that the last step took.
-    pub fn iterations(&self) -> u32 {
-        self.iterations
-    }
-
-    /// What its steps have cost since they began to be measured; nothing, if they aren't.
-    pub fn costs(&self) -> Costs {
-        self.costs.unwrap_or_default()
-    }
-
-    /// Measures from now on what its steps cost, which makes them a little slower: every stage is waited for.
-    pub fn measure_costs(&mut self) {
-        self.costs = Some(Costs::default());
-    }
-
-    /// The name of the adapter that it runs on.
-    pub fn adapter(&self) -> &str {
-        &self.system.gpu.adapter.name
-    }
-
-    /// What it takes on the device [bytes].
-    pub fn bytes(&self) -> u64 {
-        self.system.buffers.bytes()
     }
 
     #[cfg(test)]
@@ -435,18 +371,4 @@ fn mass_damping(model: &Model, materials: &Materials) -> f64 {
     let mass = |s: &SegmentTerm| yarns[s.dye as usize].density * s.rest;
     let sum = |of: &dyn Fn(&SegmentTerm) -> f64| model.segments.iter().map(of).sum::<f64>();
     sum(&|s| mass(s) * yarns[s.dye as usize].mass_damping) / sum(&mass)
-}
-
-/// Why a step has to be thrown away, if it has.
-fn rejection(verdict: &Verdict) -> Option<Rejection> {
-    if verdict.status.solved != 1 {
-        return Some(Rejection::Solve(SolveError::NotConverged));
-    }
-    let segment = (verdict.worst / 4) as usize;
-    match (verdict.worst, verdict.worst % 4) {
-        (NONE, _) => None,
-        (_, REJECTED_SHRINKING) => Some(Rejection::Shrinking(segment)),
-        (_, REJECTED_LEAPING) => Some(Rejection::Leaping(segment)),
-        _ => Some(Rejection::NotFinite),
-    }
 }

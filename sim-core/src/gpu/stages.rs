@@ -2,9 +2,10 @@
 
 use super::GpuError;
 use super::buffers::Buffers;
+use super::constants::{NARROW, SUM_SPAN, WIDE};
 use super::device::GpuDevice;
 use super::kernel::{Kernels, PART_STRIDE, Task};
-use super::layout::{NARROW, Part, SUM_SPAN, WIDE};
+use super::layout::Part;
 use super::tables::Tables;
 use crate::costs::Stage;
 use crate::overshoot::SWEEPS;
@@ -14,7 +15,8 @@ use std::ops::Range;
 pub(crate) struct Stages {
     /// Everything up to the linear system.
     pub prepare: Vec<Task>,
-    pub factorise: Vec<Task>,
+    /// In pieces that are submitted one by one: systems take a device away that is at one for too long.
+    pub factorise: Vec<Vec<Task>>,
     /// Conjugate gradients begin.
     pub solve: Vec<Task>,
     /// One iteration.
@@ -26,6 +28,9 @@ pub(crate) struct Stages {
     /// Control points of the yarns as they are drawn.
     pub draw: Vec<Task>,
 }
+
+/// Operations of a factorisation that are submitted at once: a tenth of a second on a small device.
+const MOST_OPERATIONS: u64 = 20_000_000_000;
 
 /// What dispatches are made of.
 struct Maker<'a> {
@@ -50,7 +55,7 @@ impl Maker<'_> {
         })
     }
 
-    /// A dispatch over a part, which changes the factor of a chunk by that of another one.
+    /// A dispatch over a part of a chunk, for which the factor of another one may be needed.
     fn part_task(
         &self,
         stage: &str,
@@ -59,7 +64,7 @@ impl Maker<'_> {
         range: &Range<u32>,
     ) -> Result<Task, GpuError> {
         self.kernels.task(self.gpu, stage, range.end - range.start, Some(place), |name| match name {
-            "factor_before" if from != chunk => self.buffers.find(Some(from), "factor"),
+            "factor_elsewhere" if from != chunk => self.buffers.find(Some(from), "factor"),
             _ => self.buffers.find(Some(chunk), name),
         })
     }
@@ -115,10 +120,11 @@ impl Stages {
         }
 
         // Level by level, forwards and backwards.
-        let mut factorise = Vec::new();
+        let mut factorise = vec![Vec::new()];
+        let mut operations = 0;
         for (c, chunk) in tables.chunks.iter().enumerate() {
             let workgroups = (8 * chunk.counts.node_count).div_ceil(WIDE);
-            factorise.push(maker.task("fill", Some(c), workgroups, None, &[])?);
+            factorise[0].push(maker.task("fill", Some(c), workgroups, None, &[])?);
         }
         let mut sweeps: [Vec<Task>; 2] = Default::default();
         let mut place = 0;
@@ -127,6 +133,7 @@ impl Stages {
             maker.part_task(stage, [from, chunk], place, range)
         };
         for (groups, level) in tables.pattern.levels.iter().zip(&tables.pattern.changes.levels) {
+            let mut tasks = Vec::new();
             for (chunk, range) in groups {
                 let eliminate = on_part("eliminate", [*chunk; 2], range)?;
                 for (sweep, stage) in sweeps.iter_mut().zip(["forward", "backward"]) {
@@ -140,13 +147,21 @@ impl Stages {
                         aliases,
                     )?);
                 }
-                factorise.push(eliminate);
+                tasks.push(eliminate);
             }
             for (chunk, range) in &level.below {
-                factorise.push(on_part("divide", [*chunk; 2], range)?);
+                tasks.push(on_part("divide", [*chunk; 2], range)?);
             }
             for (chunks, range) in &level.later {
-                factorise.push(on_part("take_away", *chunks, range)?);
+                tasks.push(on_part("take_away", *chunks, range)?);
+            }
+            operations += level.operations;
+            match factorise.last_mut().filter(|_| operations <= MOST_OPERATIONS) {
+                Some(piece) => piece.extend(tasks),
+                None => {
+                    factorise.push(tasks);
+                    operations = level.operations;
+                }
             }
         }
         let [forward, mut backward] = sweeps;

@@ -2,9 +2,10 @@
 
 use super::GpuError;
 use super::buffers::Buffers;
+use super::constants::NONE;
 use super::device::GpuDevice;
 use super::kernel::{Kernels, Task, record};
-use super::layout::{Body as BodyRecord, NONE, Params, Pin as PinRecord, Status};
+use super::layout::{Body as BodyRecord, Params, Pin as PinRecord, Status};
 use super::stages::{Stages, parts, stage_of};
 use super::tables::{Tables, yarns};
 use crate::costs::{Costs, Watch};
@@ -16,6 +17,8 @@ pub(crate) struct Verdict {
     pub status: Status,
     /// The first segment that is wrong, and what is wrong with it in its lower two bits; NONE if all are right.
     pub worst: u32,
+    /// Segments that turn too far.
+    pub left: u32,
     /// Contacts of layers that were wanted.
     pub contacts: u32,
     /// Contacts with bodies.
@@ -145,7 +148,7 @@ impl System {
     #[cfg(test)]
     pub fn solve_prepared(&self, iterations: u32) -> Result<Verdict, GpuError> {
         let mut submission = Submission::begin(&self.gpu, None);
-        submission.record(self.stages.factorise.iter().chain(&self.stages.solve));
+        submission.record(self.stages.factorise.iter().flatten().chain(&self.stages.solve));
         (0..iterations).for_each(|_| submission.record(&self.stages.iterate));
         submission.submit();
         self.verdict()
@@ -163,7 +166,14 @@ impl System {
         let mut submission = Submission::begin(&self.gpu, costs);
         self.clear(&mut submission);
         let Stages { prepare, factorise, solve, .. } = &self.stages;
-        submission.record(prepare.iter().chain(factorise).chain(solve));
+        submission.record(prepare);
+        for (i, piece) in factorise.iter().enumerate() {
+            if i > 0 {
+                submission.go_on();
+            }
+            submission.record(piece);
+        }
+        submission.record(solve);
         self.end_step(submission, iterations)
     }
 
@@ -173,7 +183,7 @@ impl System {
     }
 
     fn clear(&self, submission: &mut Submission) {
-        for name in ["heads", "status", "touching", "p", "back"] {
+        for name in ["heads", "status", "touching", "p"] {
             submission.encoder.clear_buffer(self.buffers.whole(name), 0, None);
         }
         for factor in self.buffers.of_chunks("factor") {
@@ -183,7 +193,8 @@ impl System {
 
     /// So many iterations, none once they are done; then the new state, whether it may follow the old, and if so in its place.
     fn end_step(&self, mut submission: Submission, iterations: u32) -> Result<Verdict, GpuError> {
-        self.write("worst", &[NONE]);
+        self.write("faults", &[NONE, 0]);
+        submission.encoder.clear_buffer(self.buffers.whole("back"), 0, None);
         (0..iterations).for_each(|_| submission.record(&self.stages.iterate));
         submission.record(&self.stages.settle);
         for (from, to) in [("position", "next_position"), ("visits", "next_visits")] {
@@ -210,11 +221,12 @@ impl System {
         };
         let cells = 4 * u64::from(self.buffers.cell_count);
         let counters = (self.buffers.whole("heads"), cells..cells + 4);
-        let all = self.gpu.read(&[whole("status"), whole("worst"), whole("touching"), counters])?;
+        let all = self.gpu.read(&[whole("status"), whole("faults"), whole("touching"), counters])?;
         let word = |bytes: &[u8]| bytemuck::pod_read_unaligned::<u32>(&bytes[..4]);
         Ok(Verdict {
             status: bytemuck::pod_read_unaligned(&all[0][..size_of::<Status>()]),
             worst: word(&all[1]),
+            left: word(&all[1][4..]),
             contacts: word(&all[3]),
             touching: word(&all[2]),
         })
@@ -247,14 +259,21 @@ impl<'a> Submission<'a> {
         let timed = self.timed.is_some();
         for run in tasks.chunk_by(|a, b| !timed || stage_of(a) == stage_of(b)) {
             record(&mut self.encoder.begin_compute_pass(&Default::default()), run.iter().copied());
+            if timed {
+                self.go_on();
+            }
             if let Some((watch, costs)) = &mut self.timed {
-                let next = self.gpu.device.create_command_encoder(&Default::default());
-                self.gpu.queue.submit([std::mem::replace(&mut self.encoder, next).finish()]);
                 // What went wrong shows when the verdict is read.
                 let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
                 watch.lap(costs, stage_of(run[0]));
             }
         }
+    }
+
+    /// Submits what has been recorded, and begins again.
+    fn go_on(&mut self) {
+        let next = self.gpu.device.create_command_encoder(&Default::default());
+        self.gpu.queue.submit([std::mem::replace(&mut self.encoder, next).finish()]);
     }
 
     fn submit(self) {

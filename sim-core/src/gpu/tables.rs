@@ -5,10 +5,8 @@
 //! chunk by chunk; an element between two chunks is in both.
 
 use super::GpuError;
-use super::layout::{
-    Bend, Block, Counts, Joint, MOST_STACK, Material as Yarn, Node, RIGID, SHEAR_OUT, Segment, Shear,
-    Stacked, Wrap,
-};
+use super::constants::{MOST_STACK, NONE, RIGID, SHEAR_OUT};
+use super::layout::{Bend, Block, Counts, Joint, Material as Yarn, Node, Segment, Shear, Stacked, Wrap};
 use super::pattern::{Pattern, Room};
 use crate::air::VISCOSITY;
 use crate::friction::Stack;
@@ -134,7 +132,7 @@ impl Tables {
                     if m == n {
                         node.own = node.width;
                     }
-                    let front = pattern.front_of(&fronts, m);
+                    let front = fronts.get(&m).copied().unwrap_or(NONE);
                     chunk.blocks.push(Block { dof: pattern.dof[m as usize], size: pattern.size(m), front });
                     own.push((m, node.width));
                     node.width += pattern.size(m);

@@ -94,7 +94,7 @@ pub(crate) struct Part {
     pub tiles: Range<usize>,
 }
 
-/// The structure of an incomplete factor.
+/// The structure of a factor.
 pub(crate) struct Pattern {
     pub groups: Vec<Group>,
     /// The last is the joint: it comes after all others.

@@ -3,11 +3,13 @@
 use super::{Action, FABRIC};
 use crate::drawing::Stage;
 use crate::window::editor::Editor;
+use crate::window::panels::leaving::Destination;
 use crate::window::pointer::Tool;
 use crate::window::session::Request;
 use egui::{Key, Modifiers};
 use render::NamedView;
 use sim_core::SimCommand;
+use std::path::PathBuf;
 
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
@@ -16,6 +18,12 @@ pub(super) const ACTIONS: &[Action] = &[
         e.search = Some(Default::default());
     })
     .key(Modifiers::NONE, Key::F3),
+    Action::new(
+        "Open…",
+        "Open a project or a mesh; without a file dialog, write its path in the field beside and press Enter",
+        open,
+    )
+    .key(Modifiers::COMMAND, Key::O),
     Action::new("Save", "Save the project under the name in the path field", Editor::save)
         .key(Modifiers::COMMAND, Key::S),
     Action::new(
@@ -129,6 +137,16 @@ pub(super) const ACTIONS: &[Action] = &[
     })
     .key(Modifiers::NONE, Key::Num0),
 ];
+
+fn open(editor: &mut Editor) {
+    // The portal's dialog has an event loop of its own; it runs beside the window and answers as a request.
+    let field = PathBuf::from(editor.panel.path.trim());
+    let current = editor.view.path.as_ref() == Some(&field);
+    editor.leave(match !current && field.is_file() {
+        true => Destination::Other(Request::Open(field)),
+        false => Destination::Chosen,
+    });
+}
 
 fn no_history(editor: &Editor) -> Option<&'static str> {
     editor.view.done.is_empty().then_some("there is nothing to undo")

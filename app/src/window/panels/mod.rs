@@ -4,6 +4,7 @@ mod colour;
 mod evenness;
 mod history;
 pub mod lab;
+pub mod leaving;
 pub mod left;
 pub mod library;
 mod material;

@@ -5,6 +5,7 @@ use crate::drawing::Stage;
 use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
 use crate::window::navigation::Navigation;
+use crate::window::panels::leaving::Destination;
 use crate::window::session::Request;
 use egui::Ui;
 use render::palette::StitchColors;
@@ -17,26 +18,21 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             ui.menu_button("New", |ui| {
                 for bundled in &bundled::ALL {
                     if ui.button(bundled.name).on_hover_text(bundled.about).clicked() {
-                        editor.request(Request::Begin(bundled));
+                        editor.leave(Destination::Other(Request::Begin(bundled)));
                     }
                 }
             })
             .response
             .on_hover_text("Begin with a mesh that comes with the program");
-            if ui
-                .button("Open…")
-                .on_hover_text("Open a project or a mesh; without a file dialog, write its path in the field")
-                .clicked()
-            {
-                open(editor);
-            }
+            button(editor, ui, "Open…");
             let field =
                 egui::TextEdit::singleline(&mut editor.panel.path).hint_text("path").desired_width(180.0);
             let response =
                 ui.add(field).on_hover_text("Where the project is saved; Enter opens what is there");
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Path"));
             if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
-                editor.request(Request::Open(PathBuf::from(editor.panel.path.trim())));
+                let path = PathBuf::from(editor.panel.path.trim());
+                editor.leave(Destination::Other(Request::Open(path)));
             }
             button(editor, ui, "Save");
             ui.separator();
@@ -79,15 +75,4 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             button_as(editor, ui, "Search commands", "🔍 Search");
         });
     });
-}
-
-fn open(editor: &mut Editor) {
-    // The portal's dialog has an event loop of its own; it runs beside the window and answers as a request.
-    let field = PathBuf::from(editor.panel.path.trim());
-    let current = editor.view.path.as_ref() == Some(&field);
-    if !current && field.is_file() {
-        editor.request(Request::Open(field));
-    } else {
-        editor.session.ask_for_file();
-    }
 }

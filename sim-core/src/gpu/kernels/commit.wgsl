@@ -7,11 +7,11 @@
 @group(0) @binding(5) var<storage, read_write> velocity: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read_write> visits: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read> status: Status;
-@group(0) @binding(8) var<storage, read> worst: u32;
+@group(0) @binding(8) var<storage, read> faults: array<u32, 2>;
 
 @compute @workgroup_size(WIDE)
 fn commit(@builtin(global_invocation_id) id: vec3<u32>) {
-    if status.solved != 1u || worst != NONE {
+    if status.solved != 1u || faults[0] != NONE || faults[1] > params.most_left {
         return;
     }
     if id.x < params.node_count {

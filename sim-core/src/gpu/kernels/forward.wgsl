@@ -10,6 +10,8 @@
 @group(0) @binding(7) var<storage, read_write> y: array<f32>;
 @group(0) @binding(8) var<storage, read> status: Status;
 
+// What each invocation has of the sums of its unknowns.
+var<workgroup> shares: array<f32, SHARES>;
 var<workgroup> known: array<f32, MOST_GROUP>;
 var<workgroup> solved: array<f32, MOST_GROUP>;
 
@@ -21,16 +23,27 @@ fn forward(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id
     let group = groups[part.first + id.x];
     let n = group.size;
     let height = n + group.row_count;
-    for (var i = lane; i < n; i += WIDE) {
-        let dof = group.dof + i;
-        var m = group.node;
-        while m + 1u < group.node_end && nodes[m + 1u].dof <= dof {
-            m++;
+    // Each sixteen of invocations has every sixteenth unknown, and goes down what is handed to it together.
+    for (var b = 0u; b < ACROSS; b++) {
+        let i = b * SIDE + lane / SIDE;
+        var sum = 0.0;
+        if i < n {
+            var m = group.node;
+            while m + 1u < group.node_end && nodes[m + 1u].dof <= group.dof + i {
+                m++;
+            }
+            let place = group.dof + i - nodes[m].dof;
+            for (var k = nodes[m].incoming + lane % SIDE; k < nodes[m].incoming_end; k += SIDE) {
+                sum += handed[incoming[k] + place];
+            }
         }
-        var sum = r[dof];
-        let place = dof - nodes[m].dof;
-        for (var k = nodes[m].incoming; k < nodes[m].incoming_end; k++) {
-            sum -= handed[incoming[k] + place];
+        shares[b * WIDE + lane] = sum;
+    }
+    workgroupBarrier();
+    for (var i = lane; i < n; i += WIDE) {
+        var sum = r[group.dof + i];
+        for (var k = 0u; k < SIDE; k++) {
+            sum -= shares[(i / SIDE) * WIDE + (i % SIDE) * SIDE + k];
         }
         known[i] = sum;
     }

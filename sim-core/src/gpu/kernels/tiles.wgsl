@@ -5,7 +5,7 @@
 @group(0) @binding(3) var<storage, read> sources: array<Source>;
 @group(0) @binding(4) var<storage, read> shared_rows: array<u32>;
 @group(0) @binding(5) var<storage, read_write> factor: array<f32>;
-@group(0) @binding(6) var<storage, read> factor_before: array<f32>;
+@group(0) @binding(6) var<storage, read> factor_elsewhere: array<f32>;
 
 // As many columns of both panels as there are invocations on a side, one after the other, each in fours.
 var<workgroup> left: array<vec4<f32>, WIDE>;
@@ -52,6 +52,23 @@ fn column_of(lane: u32, which: u32) -> u32 {
     return select(TILE + lane / SIDE, 4u * (lane / SIDE) + which, which < 4u);
 }
 
+// Four entries one below the other, zeros behind the last `count`.
+fn four_below(at: u32, count: u32) -> vec4<f32> {
+    var b = 0.0;
+    var c = 0.0;
+    var d = 0.0;
+    if count > 1u {
+        b = factor[at + 1u];
+    }
+    if count > 2u {
+        c = factor[at + 2u];
+    }
+    if count > 3u {
+        d = factor[at + 3u];
+    }
+    return vec4<f32>(factor[at], b, c, d);
+}
+
 // Q = P C⁻ᵀ, where C⁻¹ is already.
 @compute @workgroup_size(WIDE)
 fn divide(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id: vec3<u32>) {
@@ -67,19 +84,11 @@ fn divide(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id:
         if lane / SIDE < depth {
             let column = group.front + (first + lane / SIDE) * height;
             if i < tile.row_count {
-                var rows = vec4<f32>(0.0);
-                for (var a = 0u; a < min(4u, tile.row_count - i); a++) {
-                    rows[a] = factor[column + tile.row + i + a];
-                }
-                left[lane] = rows;
+                left[lane] = four_below(column + tile.row + i, tile.row_count - i);
             }
             // Above the diagonal are zeros.
             if i < n {
-                var rows = vec4<f32>(0.0);
-                for (var a = 0u; a < min(4u, n - i); a++) {
-                    rows[a] = factor[column + i + a];
-                }
-                right[lane] = rows;
+                right[lane] = four_below(column + i, n - i);
             }
             if TILE + lane % SIDE < n {
                 beyond[lane] = factor[column + TILE + lane % SIDE];
@@ -102,12 +111,30 @@ fn divide(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) id:
     }
 }
 
-// An entry of an earlier group.
-fn earlier(source: Source, at: u32) -> f32 {
-    if source.before == 0u {
+// An entry of an earlier group, in the column that begins there, of a shared row.
+fn earlier(source: Source, column: u32, shared_row: u32) -> f32 {
+    let at = column + (shared_rows[shared_row] & 0xffffu);
+    if source.elsewhere == 0u {
         return factor[at];
     }
-    return factor_before[at];
+    return factor_elsewhere[at];
+}
+
+// Four of them, zeros behind the last `count`.
+fn four_earlier(source: Source, column: u32, first: u32, count: u32) -> vec4<f32> {
+    var b = 0.0;
+    var c = 0.0;
+    var d = 0.0;
+    if count > 1u {
+        b = earlier(source, column, first + 1u);
+    }
+    if count > 2u {
+        c = earlier(source, column, first + 2u);
+    }
+    if count > 3u {
+        d = earlier(source, column, first + 3u);
+    }
+    return vec4<f32>(earlier(source, column, first), b, c, d);
 }
 
 // Takes Q Qᵀ of earlier groups away from a front.
@@ -129,21 +156,13 @@ fn take_away(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) 
             if lane / SIDE < depth {
                 let below = giver.front + (first + lane / SIDE) * (giver.size + giver.row_count) + giver.size;
                 if i < rows {
-                    var four = vec4<f32>(0.0);
-                    for (var a = 0u; a < min(4u, rows - i); a++) {
-                        four[a] = earlier(source, below + (shared_rows[source.row + i + a] & 0xffffu));
-                    }
-                    left[lane] = four;
+                    left[lane] = four_earlier(source, below, source.row + i, rows - i);
                 }
                 if i < columns {
-                    var four = vec4<f32>(0.0);
-                    for (var a = 0u; a < min(4u, columns - i); a++) {
-                        four[a] = earlier(source, below + (shared_rows[source.column + i + a] & 0xffffu));
-                    }
-                    right[lane] = four;
+                    right[lane] = four_earlier(source, below, source.column + i, columns - i);
                 }
                 if TILE + lane % SIDE < columns {
-                    beyond[lane] = earlier(source, below + (shared_rows[source.column + TILE + lane % SIDE] & 0xffffu));
+                    beyond[lane] = earlier(source, below, source.column + TILE + lane % SIDE);
                 }
             }
             workgroupBarrier();

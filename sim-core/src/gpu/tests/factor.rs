@@ -47,6 +47,7 @@ fn a_wrong_factor_is_found() {
         ("fill", "factor[column + row] = values[at]", "factor[column + row] = values[at] * f32(b % 3u)"),
         ("eliminate", "hook[i] * hook[k]", "0.999 * hook[i] * hook[k]"),
         ("tiles", "= sum[a];", "= select(sum[a], 0.0, a == 3u);"),
+        ("tiles", "-= sum[a];", "-= select(sum[a], 0.0, rows > TILE / 2u && a == 0u);"),
         ("tiles", "sums.e += beyond", "sums.e -= beyond"),
         ("forward", "handed[group.row + i] = sum", "handed[group.row + i] = 0.99 * sum"),
         ("backward", "k < SIDE", "k < SIDE - 1u"),

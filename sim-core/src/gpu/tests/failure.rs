@@ -12,6 +12,8 @@ use crate::material::Material;
 use crate::mesh_sequence::{Frames, MeshSequence};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
+use crate::simulator::SimError;
+use crate::step::Rejection;
 use std::sync::Arc;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::edge_counts::StitchSize;
@@ -131,6 +133,24 @@ fn solvers_take_turns() {
     let (moved, difference) = (apart(cpu, &net.laid_state()), apart(cpu, turns));
     println!("moved {moved:.1e}, apart {difference:.1e}");
     assert!(moved > 5e-4 && difference < 0.02 * moved);
+}
+
+#[test]
+fn a_crowd_changes_nothing() {
+    let Some(device) = device() else { return };
+    let (_, net) = ten_fabrics().swap_remove(0);
+    let net = Arc::new(net);
+    // All nodes within reach of each other, more than there is room for.
+    let mut state = net.laid_state();
+    state.position.iter_mut().for_each(|x| *x *= 0.1);
+    let material = Material::for_loop_width(3e-3);
+    let mut gpu = GpuSimulator::new(&device, &net, material, Scene::empty(), state).unwrap();
+    let before = gpu.state().unwrap().clone();
+    let error = gpu.step().unwrap_err();
+    assert!(matches!(error, SimError::Stuck { cause: Rejection::Crowded, .. }), "{error}");
+    // But for single precision.
+    let after = gpu.state().unwrap();
+    assert!(apart(&before, after) < 1e-9 && after.velocity.iter().all(|v| v.length() == 0.0));
 }
 
 /// 325 000 loops, of 24 KB each, need 7.8 GB in chunks; what is not in chunks has to fit into one binding.

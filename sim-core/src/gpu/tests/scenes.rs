@@ -4,11 +4,15 @@ use super::agreement::{Pair, crumpled};
 use super::{device, ten_fabrics};
 use crate::closed_mesh::ClosedMesh;
 use crate::closed_mesh::tests::cuboid;
+use crate::gpu::GpuSimulator;
 use crate::gpu::pattern::Room;
+use crate::material::Material;
 use crate::motion::{Key, Motion};
 use crate::scene::{Clamp, Scene};
+use crate::simulator::Simulator;
 use crate::{Body, Pin};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Bodies of every kind that reach into a fabric of `middle` [m].
 fn bodies(middle: DVec3) -> Vec<(&'static str, Body)> {
@@ -90,5 +94,32 @@ fn layers_press_each_other_as_on_the_cpu() {
     for (what, difference, bound) in found {
         println!("{tail} contacts: {what} {difference:.1e}");
         assert!(difference < bound, "{what} is off by {difference:.1e}");
+    }
+}
+
+#[test]
+fn the_ground_carries_the_weight_of_what_lies_on_it() {
+    let Some(device) = device() else { return };
+    let (_, net) = ten_fabrics().swap_remove(1);
+    let net = Arc::new(net);
+    let material = Material { mass_damping: 40.0, ..Material::for_loop_width(3e-3) };
+    let mut state = net.laid_state();
+    let lying = |x: DVec3| DVec3::new(x.x, x.z + 2.0 * material.drawn_radius, -x.y);
+    state.position.iter_mut().for_each(|x| *x = lying(*x));
+    let bodies = vec![Body::Ground { height: 0.0, friction: 0.3 }];
+    let scene = Scene { bodies, ..Scene::default() };
+    let mut on_gpu =
+        GpuSimulator::new(&device, &net, material.clone(), scene.clone(), state.clone()).unwrap();
+    let mut on_cpu = Simulator::new(&net, material, scene.clone(), state).unwrap();
+    while on_cpu.time_s() < 0.3 {
+        on_cpu.step().unwrap();
+        on_gpu.step().unwrap();
+    }
+    on_gpu.state().unwrap();
+    let weight = on_cpu.model().node_masses(on_cpu.materials()).iter().sum::<f64>() * scene.gravity.length();
+    for (name, holds) in [("cpu", on_cpu.holds()), ("gpu", on_gpu.holds())] {
+        let [ground] = &holds[..] else { panic!("{holds:?}") };
+        println!("{name}: {:?} of {weight:e} N", ground.force_n);
+        assert!(ground.force_n.distance(weight * DVec3::Y) < 0.05 * weight, "{name}: {:?}", ground.force_n);
     }
 }

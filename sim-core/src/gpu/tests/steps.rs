@@ -73,47 +73,69 @@ fn a_piece_of_many_levels_steps_like_on_the_cpu() {
     assert!(difference < 5e-2 * moved, "{difference:e} of {moved:e}");
 }
 
-/// The distance between a step of the CPU and one with these kernels, of fabric so thrown about that its segments turn; and what the
-/// CPU draws them back by.
-fn thrown_about(sources: &[Source]) -> Option<(f64, f64)> {
+/// A fabric whose nodes have these velocities, on the CPU and with these kernels.
+fn moving(
+    sources: &[Source],
+    net: YarnNet,
+    velocity: impl Fn(usize, DVec3) -> DVec3,
+) -> Option<(Simulator, GpuSimulator)> {
     let device = device()?;
-    let (_, net) = ten_fabrics().swap_remove(0);
     let net = Arc::new(net);
     let material = Material::for_loop_width(3e-3);
     let mut state = net.laid_state();
-    for (i, v) in state.velocity.iter_mut().enumerate() {
-        let number = |k: usize| 0.2 * (unit_hash((3 * i + k) as u64) - 0.5);
-        *v = DVec3::new(number(0), number(1), number(2));
+    for (i, (x, v)) in state.position.iter().zip(&mut state.velocity).enumerate() {
+        *v = velocity(i, *x);
     }
     let scene = Scene { time_step: 4e-3, ..Scene::empty() };
-    let mut cpu = Simulator::new(&net, material.clone(), scene.clone(), state.clone()).unwrap();
+    let cpu = Simulator::new(&net, material.clone(), scene.clone(), state.clone()).unwrap();
     let from = Handover::new(&net, material, scene, state).unwrap();
     let kernels = Kernels::compile(&device, sources).unwrap();
-    let mut gpu = GpuSimulator::with(&device, kernels, Room::on(&device), from).unwrap();
+    Some((cpu, GpuSimulator::with(&device, kernels, Room::on(&device), from).unwrap()))
+}
+
+/// Fabric thrown about so that its segments turn.
+fn thrown_about(sources: &[Source]) -> Option<(Simulator, GpuSimulator)> {
+    let number = |k: usize| 0.2 * (unit_hash(k as u64) - 0.5);
+    let thrown = |i: usize, _| DVec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+    moving(sources, ten_fabrics().swap_remove(0).1, thrown)
+}
+
+/// A strip that turns about its lower end, by half a radian a step.
+fn turning(sources: &[Source]) -> Option<(Simulator, GpuSimulator)> {
+    let net = lay(&rectangle(4, 40, StitchSize::of_width(3e-3)).unwrap());
+    moving(sources, net, |_, x| DVec3::Z * 0.5 / 4e-3 * x.y)
+}
+
+/// How far a step of fabric thrown about is from that of the CPU with these kernels, and how much longer its longest segment is.
+fn unlike_thrown_about(sources: &[Source]) -> Option<(f64, f64)> {
+    let (mut cpu, mut gpu) = thrown_about(sources)?;
     assert_eq!(cpu.step().unwrap(), gpu.step().unwrap());
-    let gpu = gpu.state().unwrap();
-    let longest = |s: &YarnState| {
-        let strain = |g: stitch_mesh::yarn_net::Segment| {
-            let [a, b] = g.ends.map(|v| s.position[net.visits[v.index()].node.index()]);
-            a.distance(b) / (s.sliding[g.ends[1].index()] + g.wrap - s.sliding[g.ends[0].index()]) - 1.0
-        };
-        net.segments().map(strain).fold(0.0, f64::max)
-    };
-    Some((apart(cpu.state(), gpu), longest(gpu) - longest(cpu.state())))
+    let longer = gpu.max_stretch().unwrap() - crate::facts::max_stretch(cpu.model(), cpu.state());
+    Some((apart(cpu.state(), gpu.state().unwrap()), longer))
 }
 
 #[test]
 fn segments_that_turn_are_drawn_back_as_on_the_cpu() {
-    let Some((apart, longer)) = thrown_about(SOURCES) else { return };
+    let Some((apart, longer)) = unlike_thrown_about(SOURCES) else { return };
     println!("{apart:.1e} m apart, {longer:.1e} longer");
     // They fly by 0.4 mm, twice as far as those that CLOSE is for.
     assert!(apart < 3.0 * CLOSE && longer.abs() < 1e-4);
-    let Some((apart, longer)) = thrown_about(&spoilt("overshoot", "sum += drawn", "sum += 0.1 * drawn"))
-    else {
-        return;
-    };
+    let wrong = spoilt("overshoot", "sum += drawn", "sum += 0.1 * drawn");
+    let Some((apart, longer)) = unlike_thrown_about(&wrong) else { return };
     println!("spoilt: {apart:.1e} m apart, {longer:.1e} longer");
     assert!(longer > 1e-3);
+}
+
+#[test]
+fn a_step_in_which_many_turn_too_far_is_taken_again() {
+    let Some((mut cpu, mut gpu)) = turning(SOURCES) else { return };
+    let (report, reported) = (cpu.step().unwrap(), gpu.step().unwrap());
+    println!("{report:?}");
+    assert!(report.rejected > 0);
+    assert_eq!(report, reported);
+    let wrong = spoilt("judge", "atomicAdd(&faults[1], 1u)", "atomicAdd(&faults[1], 0u)");
+    let Some((_, mut gpu)) = turning(&wrong) else { return };
+    assert!(gpu.step().unwrap().rejected < report.rejected);
 }
 
 #[test]

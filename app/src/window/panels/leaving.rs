@@ -1,0 +1,65 @@
+//! Before work that has not been saved is left: whether to save it.
+
+use crate::window::editor::Editor;
+use crate::window::session::Request;
+use egui::{Context, Id, Modal};
+
+/// Where one wants to go.
+#[derive(Clone, Debug)]
+pub(in crate::window) enum Destination {
+    /// To another document.
+    Other(Request),
+    /// To a document that is to be chosen yet.
+    Chosen,
+    /// Out of the window.
+    Closed,
+}
+
+/// That somebody has been asked, or has answered.
+#[derive(Clone, Debug)]
+pub(in crate::window) struct Leaving {
+    /// Where to.
+    pub to: Destination,
+    /// Whether the document is being saved first.
+    pub is_saving: bool,
+}
+
+/// Asks, if there is something to ask.
+pub fn show(editor: &mut Editor, context: &Context) {
+    let Some(Leaving { to, is_saving }) = editor.leaving.clone() else { return };
+    if is_saving {
+        if editor.session.is_busy() {
+            return;
+        }
+        // Where it could not be saved, the status bar says why, and nobody leaves.
+        if editor.session.latest().is_changed {
+            editor.leaving = None;
+        } else {
+            editor.go(to);
+        }
+        return;
+    }
+    let name = editor.view.path.as_ref().and_then(|p| p.file_name()).unwrap_or("this".as_ref());
+    let asked = format!("Save what was done to {} first?", name.display());
+    let modal = Modal::new(Id::unique("leaving")).show(context, |ui| {
+        ui.heading(asked);
+        ui.label("It has not been saved since the last change.");
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            if ui.button("Save and go on").clicked() {
+                editor.save();
+                let is_named = editor.error.is_none();
+                editor.leaving = is_named.then_some(Leaving { to: to.clone(), is_saving: true });
+            }
+            if ui.button("Go on without").clicked() {
+                editor.go(to.clone());
+            }
+            if ui.button("Stay").clicked() {
+                editor.leaving = None;
+            }
+        });
+    });
+    if modal.should_close() {
+        editor.leaving = None;
+    }
+}
