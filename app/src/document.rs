@@ -39,8 +39,11 @@ impl Step {
     }
 
     fn name(&self) -> String {
-        let more = self.commands.len() - 1;
-        let first = self.commands.first().map(Command::name).unwrap_or_default();
+        // What makes room for something else is not worth a word.
+        let telling: Vec<&Command> =
+            self.commands.iter().filter(|c| !matches!(c, Command::ClearCables { .. })).collect();
+        let more = telling.len().saturating_sub(1);
+        let first = telling.first().copied().or(self.commands.first()).map(Command::name).unwrap_or_default();
         if more == 0 { first } else { format!("{first} and {more} more") }
     }
 }

@@ -134,6 +134,17 @@ impl Cable {
         }
     }
 
+    /// Its strands as knitters count them, and of two which way the one in front goes: "2/2 left".
+    pub fn name(&self) -> String {
+        let strands: Vec<String> = self.strands.iter().map(u8::to_string).collect();
+        let way = match (self.strands.len(), self.front.first()) {
+            (2, Some(1)) => " left",
+            (2, _) => " right",
+            _ => "",
+        };
+        strands.join("/") + way
+    }
+
     /// Whether the edge between two vertices lies in this cable.
     pub fn covers(&self, a: VertexId, b: VertexId) -> bool {
         self.path.windows(2).any(|w| *w == [a, b] || *w == [b, a])

@@ -24,9 +24,15 @@ fn a_cable_crosses_left_then_right_then_not() {
     };
     window.key(NONE, Key::X);
     assert_eq!(cables(&window), [(vec![2, 2], vec![1, 0])]);
-    window.keep("cable");
+    let left = window.keep("cable");
+    assert!(window.says("Cable 2/2 left"), "in the history");
     window.key(NONE, Key::X);
     assert_eq!(cables(&window), [(vec![2, 2], vec![0, 1])]);
+    assert!(window.says("Cable 2/2 right") && !window.says("Clear cables"));
+    // The strands are on the stitches, and lie otherwise now.
+    let right = window.keep("cable-right");
+    let other = left.pixels().zip(right.pixels()).filter(|(a, b)| a != b).count();
+    assert!(other > 200, "{other} pixels");
     window.key(Modifiers::COMMAND, Key::Z);
     assert_eq!(cables(&window), [(vec![2, 2], vec![1, 0])], "turning it round was one step");
     window.key(NONE, Key::X);

@@ -43,10 +43,7 @@ impl Command {
             Self::SetStitch { faces, stitch } => format!("Set {} to {stitch}", many(faces.len(), "stitch")),
             Self::SetChart { chart, .. } => format!("Repeat {}", chart.join(" / ")),
             Self::FillRegion { stitch, .. } => format!("Fill with {stitch}"),
-            Self::SetCable { cable } => {
-                let strands: Vec<String> = cable.strands.iter().map(u8::to_string).collect();
-                format!("Cable {}", strands.join("/"))
-            }
+            Self::SetCable { cable } => format!("Cable {}", cable.name()),
             Self::ClearCables { .. } => "Clear cables".into(),
             Self::SetLive { edges, live: true } => format!("Leave {} live", many(edges.len(), "loop")),
             Self::SetLive { edges, live: false } => format!("Bind off {}", many(edges.len(), "loop")),

@@ -64,10 +64,15 @@ fn under_pointer(editor: &Editor) -> Option<String> {
             None => "no label",
         };
         let border = if mesh.is_border(edge) { ", border" } else { "" };
+        let cable = match &surface {
+            Surface::Stitched(stitches) => stitches.cables().iter().find(|c| c.covers(a, b)),
+            Surface::Labelled(_) => None,
+        };
+        let cable = cable.map_or_else(String::new, |c| format!(", cable {}", c.name()));
         let length = 1e3 * mesh.edge_length(edge);
         let unit = if label == "wale" { "rows" } else { "stitches" };
         let count = editor.count(edge).map_or_else(String::new, |n| format!(", {n} {unit}"));
-        return Some(format!("edge {a}–{b}, {label}{count}, {length:.1} mm{border}"));
+        return Some(format!("edge {a}–{b}, {label}{count}, {length:.1} mm{border}{cable}"));
     }
     let face = mesh.face(half);
     let (what, place) = match surface {
