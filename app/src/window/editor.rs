@@ -5,7 +5,7 @@
 
 use super::chart::ChartView;
 use super::navigation::Navigation;
-use super::panels::leaving::{Destination, Leaving};
+use super::panels::leaving::Leaving;
 use super::pointer::{Gesture, Tool};
 use super::screen::Screen;
 use super::search::Search;
@@ -91,7 +91,7 @@ pub struct Editor {
     pub(super) error: Option<String>,
     /// What is to be done once it is clear what happens to work that has not been saved.
     pub(super) leaving: Option<Leaving>,
-    is_closed: bool,
+    pub(super) is_closed: bool,
 }
 
 impl Editor {
@@ -228,35 +228,6 @@ impl Editor {
             state: Arc::new(s.state.clone()),
         });
         self.session.send(request, yarn);
-    }
-
-    /// Leaves the document for something else, or asks first what is to happen to it.
-    pub(super) fn leave(&mut self, to: Destination) {
-        if self.view.is_changed {
-            self.leaving = Some(Leaving { to, is_saving: false });
-        } else {
-            self.go(to);
-        }
-    }
-
-    /// Leaves the document as it is.
-    pub(super) fn go(&mut self, to: Destination) {
-        self.leaving = None;
-        match to {
-            Destination::Other(request) => self.request(request),
-            Destination::Chosen => self.session.ask_for_file(),
-            Destination::Closed => self.is_closed = true,
-        }
-    }
-
-    /// Somebody wants to close the window.
-    pub fn close(&mut self) {
-        self.leave(Destination::Closed);
-    }
-
-    /// Whether it may be closed now.
-    pub fn is_closed(&self) -> bool {
-        self.is_closed
     }
 
     pub(super) fn act(&mut self, command: Command) {

@@ -24,6 +24,37 @@ pub(in crate::window) struct Leaving {
     pub is_saving: bool,
 }
 
+impl Editor {
+    /// Leaves the document for something else, or asks first what is to happen to it.
+    pub(in crate::window) fn leave(&mut self, to: Destination) {
+        if self.view.is_changed {
+            self.leaving = Some(Leaving { to, is_saving: false });
+        } else {
+            self.go(to);
+        }
+    }
+
+    /// Leaves the document as it is.
+    pub(in crate::window) fn go(&mut self, to: Destination) {
+        self.leaving = None;
+        match to {
+            Destination::Other(request) => self.request(request),
+            Destination::Chosen => self.session.ask_for_file(),
+            Destination::Closed => self.is_closed = true,
+        }
+    }
+
+    /// Somebody wants to close the window.
+    pub fn close(&mut self) {
+        self.leave(Destination::Closed);
+    }
+
+    /// Whether it may be closed now.
+    pub fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+}
+
 /// Asks, if there is something to ask.
 pub fn show(editor: &mut Editor, context: &Context) {
     let Some(Leaving { to, is_saving }) = editor.leaving.clone() else { return };
