@@ -1,6 +1,6 @@
 //! Reading and writing files: errors name the file, and nothing is overwritten until its replacement is whole.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::io::Write as _;
 use std::path::Path;
 
@@ -28,8 +28,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     write().with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Writes a picture as PNG, whole or not at all.
+/// Writes a picture as PNG, whole or not at all; not under the name of another kind of file.
 pub fn write_png(path: &Path, image: &image::RgbaImage) -> Result<()> {
+    if let Some(ending) = path.extension().filter(|ending| !ending.eq_ignore_ascii_case("png")) {
+        bail!("{}: pictures are written as .png, not as .{}", path.display(), ending.display());
+    }
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png)?;
     write(path, bytes.get_ref())
@@ -50,4 +53,22 @@ pub fn write_small_png(path: &Path, image: &image::RgbaImage) -> Result<()> {
     encoder.set_filter(png::Filter::NoFilter);
     encoder.write_header()?.write_image_data(&pixels)?;
     write(path, &bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_has_the_name_of_what_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let image = image::RgbaImage::new(2, 2);
+        for (name, is_written) in [("a.png", true), ("b.PNG", true), ("c", true), ("d.bmp", false)] {
+            let path = folder.path().join(name);
+            let written = write_png(&path, &image);
+            assert_eq!(written.is_ok(), is_written, "{name}");
+            assert_eq!(path.exists(), is_written);
+            assert!(is_written || written.unwrap_err().to_string().contains("d.bmp"));
+        }
+    }
 }

@@ -105,6 +105,25 @@ fn chart_and_picture_select_the_same() {
 }
 
 #[test]
+fn a_box_in_the_chart_selects_what_it_touches() {
+    let (mut window, rows) = chart();
+    let [from, to] = [rows[1][2], rows[3][4]].map(|face| square(&window, face));
+    let block: Vec<u32> = rows[1..4].iter().flat_map(|row| row[2..5].iter().copied()).collect();
+    let sorted = |mut faces: Vec<u32>| {
+        faces.sort_unstable();
+        faces
+    };
+    drag(&mut window, from, to, NONE);
+    assert_eq!(sorted(window.selected()), sorted(block.clone()));
+    let beside = square(&window, rows[1][5]);
+    click(&mut window, beside, Modifiers::SHIFT);
+    assert_eq!(window.selected().len(), block.len() + 1);
+    window.keep("chart-box");
+    drag(&mut window, from, to, Modifiers::COMMAND);
+    assert_eq!(window.selected(), [rows[1][5]]);
+}
+
+#[test]
 fn a_stroke_in_the_chart_is_one_step() {
     let (mut window, rows) = chart();
     window.harness.remove_cursor();

@@ -35,6 +35,8 @@ pub struct ChartView {
     corner: Option<Pos2>,
     /// The face under the pointer.
     over: Option<FaceId>,
+    /// Where a box began that is being drawn.
+    box_from: Option<Pos2>,
 }
 
 /// A chart with its marks.
@@ -208,22 +210,39 @@ fn squares(editor: &mut Editor, ui: &mut Ui) {
             }
             None => response,
         };
-        use_mouse(editor, ui, &response, chart.over);
+        if response.drag_started_by(egui::PointerButton::Primary) && editor.tool != Tool::Paint {
+            chart.box_from = ui.input(|i| i.pointer.press_origin());
+        }
+        let drawn_box =
+            chart.box_from.zip(response.interact_pointer_pos()).map(|(a, b)| Rect::from_two_pos(a, b));
+        let over = match drawn_box {
+            Some(drawn_box) => {
+                ui.painter().rect_stroke(drawn_box, 0.0, Stroke::new(1.5, color), StrokeKind::Middle);
+                let cells = drawn.diagram.cells();
+                let inside = cells
+                    .filter(|(row, cell)| place(&drawn.diagram, rect.min, *row, cell).intersects(drawn_box));
+                inside.filter_map(|(_, cell)| cell.face).collect()
+            }
+            None => chart.over.into_iter().collect(),
+        };
+        if response.drag_stopped() {
+            chart.box_from = None;
+        }
+        use_mouse(editor, ui, &response, over, drawn_box.is_some());
     }
     editor.chart = Some(chart);
 }
 
-/// A click selects or paints what it hits.
-fn use_mouse(editor: &mut Editor, ui: &Ui, response: &Response, over: Option<FaceId>) {
+/// A click selects or paints what it hits, a box selects what it touches once it is drawn.
+fn use_mouse(editor: &mut Editor, ui: &Ui, response: &Response, over: Vec<FaceId>, in_box: bool) {
     let held = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
-    let whole_rows = editor.selection().mode == Mode::Row;
-    let faces: Vec<FaceId> = match over {
-        Some(face) if whole_rows => editor.surface().row(face),
-        over => over.into_iter().collect(),
+    let faces: Vec<FaceId> = match editor.selection().mode {
+        Mode::Row => over.into_iter().flat_map(|face| editor.surface().row(face)).collect(),
+        _ => over,
     };
     if editor.tool == Tool::Paint {
         paint_over(editor, faces, held, response.clicked());
-    } else if response.clicked() {
+    } else if response.clicked() || in_box && response.drag_stopped() {
         editor.select(Picked::Faces(faces), Change::of(ui.input(modifiers_of_click)));
     }
 }
