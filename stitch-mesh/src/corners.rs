@@ -49,6 +49,22 @@ impl Corners {
         Self { starts, corners }
     }
 
+    /// Corners that are given vertex by vertex, in the order of the faces: `list` adds those of a vertex.
+    pub fn listed(
+        vertex_count: usize,
+        corner_count: usize,
+        mut list: impl FnMut(u32, &mut Vec<Corner>),
+    ) -> Self {
+        let mut starts = Vec::with_capacity(vertex_count + 1);
+        let mut corners = Vec::with_capacity(corner_count);
+        for vertex in 0..vertex_count as u32 {
+            starts.push(corners.len() as u32);
+            list(vertex, &mut corners);
+        }
+        starts.push(corners.len() as u32);
+        Self { starts, corners }
+    }
+
     /// The corners at a vertex, in the order of the faces.
     pub fn at(&self, vertex: u32) -> &[Corner] {
         let v = vertex as usize;
@@ -62,9 +78,12 @@ impl Corners {
 
     /// Whether two half-edges lead the same way between the same vertices: then the mesh is not manifold there.
     pub fn has_doubles(&self) -> bool {
-        (0..self.starts.len() as u32 - 1).into_par_iter().any(|v| {
-            let around = self.at(v);
-            around.iter().enumerate().any(|(i, c)| around[..i].iter().any(|d| d.after == c.after))
-        })
+        (0..self.starts.len() as u32 - 1).into_par_iter().any(|v| self.has_double_at(v))
+    }
+
+    /// Whether two of them begin at a vertex.
+    pub fn has_double_at(&self, vertex: u32) -> bool {
+        let around = self.at(vertex);
+        around.iter().enumerate().any(|(i, c)| around[..i].iter().any(|d| d.after == c.after))
     }
 }

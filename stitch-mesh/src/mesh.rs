@@ -6,79 +6,20 @@
 
 use crate::corners::Corners;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
+use crate::sides::Sides;
 pub use crate::validate::MeshError;
 use crate::validate::{MeshProblem, area_vector, check, position_problems};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct HalfEdge {
-    origin: VertexId,
-    face: FaceId,
-    twin: Option<HalfEdgeId>,
-    edge: EdgeId,
-}
-
 /// A half-edge mesh of polygons. See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolygonMesh {
-    positions: Vec<DVec3>,
-    half_edges: Vec<HalfEdge>,
-    /// First half-edge of every edge.
-    edges: Vec<HalfEdgeId>,
-    /// First half-edge of every face, and one more entry for the end of the last face.
-    face_starts: Vec<u32>,
-    /// Border half-edge that starts at a vertex, for border vertices.
-    border_from: Vec<Option<HalfEdgeId>>,
+    pub(crate) positions: Vec<DVec3>,
+    pub(crate) sides: Sides,
     /// The faces around every vertex.
-    corners: Corners,
-}
-
-/// The half-edges of faces: a mesh without its vertices.
-struct Sides {
-    half_edges: Vec<HalfEdge>,
-    edges: Vec<HalfEdgeId>,
-    face_starts: Vec<u32>,
-    border_from: Vec<Option<HalfEdgeId>>,
-}
-
-impl Sides {
-    /// What comes of faces in which something is wrong is no mesh.
-    fn of(vertex_count: usize, faces: &[impl AsRef<[u32]>], corners: &Corners) -> Self {
-        let count = faces.iter().map(|f| f.as_ref().len()).sum();
-        let mut half_edges: Vec<HalfEdge> = Vec::with_capacity(count);
-        let mut edges: Vec<HalfEdgeId> = Vec::with_capacity(count / 2);
-        let mut face_starts = Vec::with_capacity(faces.len() + 1);
-        face_starts.push(0);
-        let mut border_from = vec![None; vertex_count];
-        for (face, vertices) in faces.iter().map(AsRef::as_ref).enumerate() {
-            for (i, &a) in vertices.iter().enumerate() {
-                let this = HalfEdgeId::new(half_edges.len());
-                let b = vertices[(i + 1) % vertices.len()];
-                let twin = corners.half_edge(b, a).map(HalfEdgeId);
-                // An edge is numbered when the first of its half-edges is met.
-                let edge = match twin.filter(|t| *t < this) {
-                    Some(twin) => half_edges[twin.index()].edge,
-                    None => {
-                        edges.push(this);
-                        EdgeId::new(edges.len() - 1)
-                    }
-                };
-                if twin.is_none() {
-                    border_from[a as usize] = Some(this);
-                }
-                half_edges.push(HalfEdge { origin: VertexId(a), face: FaceId::new(face), twin, edge });
-            }
-            face_starts.push(half_edges.len() as u32);
-        }
-        Self { half_edges, edges, face_starts, border_from }
-    }
-
-    fn with(self, positions: Vec<DVec3>, corners: Corners) -> PolygonMesh {
-        let Self { half_edges, edges, face_starts, border_from } = self;
-        PolygonMesh { positions, half_edges, edges, face_starts, border_from, corners }
-    }
+    pub(crate) corners: Corners,
 }
 
 impl PolygonMesh {
@@ -89,14 +30,14 @@ impl PolygonMesh {
     pub fn new(positions: Vec<DVec3>, faces: &[impl AsRef<[u32]> + Sync]) -> Result<Self, MeshError> {
         let build = |corners: &Corners| Sides::of(positions.len(), faces, corners);
         let (corners, sides) = check(&positions, faces, build).map_err(MeshError)?;
-        Ok(sides.with(positions, corners))
+        Ok(Self { positions, sides, corners })
     }
 
     /// The mesh without faces, where nothing is knitted.
     pub(crate) fn empty() -> Self {
         let faces = [[0; 0]; 0];
         let corners = Corners::new(0, &faces);
-        Sides::of(0, &faces, &corners).with(Vec::new(), corners)
+        Self { positions: Vec::new(), sides: Sides::of(0, &faces, &corners), corners }
     }
 
     /// The same mesh with its vertices at other positions [m]. All ids survive.
@@ -134,21 +75,21 @@ impl PolygonMesh {
 
     /// Number of half-edges.
     pub fn half_edge_count(&self) -> usize {
-        self.half_edges.len()
+        self.sides.half_edges.len()
     }
 
     /// Number of edges.
     pub fn edge_count(&self) -> usize {
-        self.edges.len()
+        self.sides.edges.len()
     }
 
     /// Number of faces.
     pub fn face_count(&self) -> usize {
-        self.face_starts.len() - 1
+        self.sides.face_starts.len() - 1
     }
 
     /// All faces.
-    pub fn faces(&self) -> impl ExactSizeIterator<Item = FaceId> + use<> {
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = FaceId> + Clone + use<> {
         (0..self.face_count()).map(FaceId::new)
     }
 
@@ -157,13 +98,13 @@ impl PolygonMesh {
         (0..self.edge_count()).map(EdgeId::new)
     }
 
-    fn face_range(&self, face: FaceId) -> Range<u32> {
-        self.face_starts[face.index()]..self.face_starts[face.index() + 1]
+    pub(crate) fn face_range(&self, face: FaceId) -> Range<u32> {
+        self.sides.face_starts[face.index()]..self.sides.face_starts[face.index() + 1]
     }
 
     /// The half-edge with which a face begins.
     pub fn first_half_edge(&self, face: FaceId) -> HalfEdgeId {
-        HalfEdgeId(self.face_starts[face.index()])
+        HalfEdgeId(self.sides.face_starts[face.index()])
     }
 
     /// Half-edges of a face, in its order.
@@ -186,7 +127,7 @@ impl PolygonMesh {
 
     /// The vertex at which a half-edge starts.
     pub fn origin(&self, h: HalfEdgeId) -> VertexId {
-        self.half_edges[h.index()].origin
+        self.sides.half_edges[h.index()].origin
     }
 
     /// The vertex at which a half-edge ends.
@@ -196,7 +137,7 @@ impl PolygonMesh {
 
     /// The face on the left of a half-edge.
     pub fn face(&self, h: HalfEdgeId) -> FaceId {
-        self.half_edges[h.index()].face
+        self.sides.half_edges[h.index()].face
     }
 
     /// The next half-edge of the same face.
@@ -213,7 +154,7 @@ impl PolygonMesh {
 
     /// The half-edge on the other side of the same edge; none on the border.
     pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
-        self.half_edges[h.index()].twin
+        self.sides.half_edges[h.index()].twin
     }
 
     /// The face across a half-edge; none on the border.
@@ -223,18 +164,18 @@ impl PolygonMesh {
 
     /// The edge of a half-edge.
     pub fn edge(&self, h: HalfEdgeId) -> EdgeId {
-        self.half_edges[h.index()].edge
+        self.sides.half_edges[h.index()].edge
     }
 
     /// The first half-edge of an edge, and its twin where there is one.
     pub fn edge_sides(&self, edge: EdgeId) -> (HalfEdgeId, Option<HalfEdgeId>) {
-        let first = self.edges[edge.index()];
+        let first = self.sides.edges[edge.index()];
         (first, self.twin(first))
     }
 
     /// Both ends of an edge.
     pub fn edge_ends(&self, edge: EdgeId) -> [VertexId; 2] {
-        let first = self.edges[edge.index()];
+        let first = self.sides.edges[edge.index()];
         [self.origin(first), self.tip(first)]
     }
 
@@ -274,14 +215,14 @@ impl PolygonMesh {
     /// The border half-edge that follows a border half-edge; with the faces on the left, a border runs clockwise around its
     /// hole and counter-clockwise around a flat piece.
     pub fn next_on_border(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
-        self.border_from[self.tip(h).index()]
+        self.sides.border_from[self.tip(h).index()]
     }
 
     /// Every border as a ring of half-edges.
     pub fn borders(&self) -> Vec<Vec<HalfEdgeId>> {
-        let mut seen = vec![false; self.half_edges.len()];
+        let mut seen = vec![false; self.sides.half_edges.len()];
         let mut borders = Vec::new();
-        for start in (0..self.half_edges.len()).map(HalfEdgeId::new) {
+        for start in (0..self.sides.half_edges.len()).map(HalfEdgeId::new) {
             if self.twin(start).is_some() || seen[start.index()] {
                 continue;
             }
@@ -335,7 +276,8 @@ impl PolygonMesh {
     pub fn vertex_normals(&self) -> Vec<DVec3> {
         let areas: Vec<DVec3> =
             (0..self.face_count()).into_par_iter().map(|f| self.face_area_vector(FaceId::new(f))).collect();
-        let around = |v: u32| self.corners.at(v).iter().map(|c| self.half_edges[c.half_edge as usize].face);
+        let around =
+            |v: u32| self.corners.at(v).iter().map(|c| self.sides.half_edges[c.half_edge as usize].face);
         let normal = |v: u32| around(v).map(|f| areas[f.index()]).sum::<DVec3>().normalize_or(DVec3::Z);
         (0..self.positions.len() as u32).into_par_iter().map(normal).collect()
     }

@@ -23,6 +23,7 @@ use crate::stitch::Stitch;
 use crate::wrapping::{Wrapping, WrappingError};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// A mesh of stitches. See the module.
@@ -112,6 +113,26 @@ impl StitchMesh {
     /// # Errors
     /// [`StitchMeshError`] where an invariant does not hold.
     pub fn new(mesh: PolygonMesh, stitches: Vec<Stitch>) -> Result<Self, StitchMeshError> {
+        let stitch_mesh = Self::unchecked(mesh, stitches)?;
+        stitch_mesh.check(stitch_mesh.mesh.faces())?;
+        Ok(stitch_mesh)
+    }
+
+    /// As [`Self::new`], where all faces but some have been beside the same ones in a stitch mesh before.
+    pub(crate) fn refaced(
+        mesh: PolygonMesh,
+        stitches: Vec<Stitch>,
+        others: impl Iterator<Item = FaceId>,
+    ) -> Result<Self, StitchMeshError> {
+        let stitch_mesh = Self::unchecked(mesh, stitches)?;
+        let mesh = stitch_mesh.mesh();
+        let beside = |f| mesh.face_half_edges(f).filter_map(|h| mesh.face_across(h)).chain([f]);
+        let near: BTreeSet<FaceId> = others.flat_map(beside).collect();
+        stitch_mesh.check(near.iter().copied())?;
+        Ok(stitch_mesh)
+    }
+
+    fn unchecked(mesh: PolygonMesh, stitches: Vec<Stitch>) -> Result<Self, StitchMeshError> {
         if stitches.len() != mesh.face_count() {
             return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
         }
@@ -124,18 +145,21 @@ impl StitchMesh {
             places: vec![None; faces],
             marks: Marks::default(),
         };
-        for face in stitch_mesh.mesh.faces() {
-            stitch_mesh.check_fit(face, stitch_mesh.stitch(face))?;
-        }
-        for face in stitch_mesh.mesh.faces() {
-            if let Some(twin) = stitch_mesh.mesh.twin(stitch_mesh.right(face)) {
-                let other = stitch_mesh.mesh.face(twin);
-                if stitch_mesh.left(other) != twin {
+        Ok(stitch_mesh)
+    }
+
+    /// Looks through some faces.
+    fn check(&self, faces: impl Iterator<Item = FaceId> + Clone) -> Result<(), StitchMeshError> {
+        faces.clone().try_for_each(|face| self.check_fit(face, self.stitch(face)))?;
+        for face in faces {
+            if let Some(twin) = self.mesh.twin(self.right(face)) {
+                let other = self.mesh.face(twin);
+                if self.left(other) != twin {
                     return Err(StitchMeshError::Wales(face, other));
                 }
             }
         }
-        Ok(stitch_mesh)
+        Ok(())
     }
 
     /// No stitches at all: what a project of woven cloth has.

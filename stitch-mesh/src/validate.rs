@@ -148,7 +148,7 @@ fn degenerate_faces(positions: &[DVec3], faces: &[impl AsRef<[u32]> + Sync]) -> 
     faces.par_iter().map(AsRef::as_ref).enumerate().filter_map(problem).collect()
 }
 
-fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
+pub(crate) fn degenerate(positions: &[DVec3], vertices: &[u32]) -> Option<&'static str> {
     if vertices.len() < 3 {
         return Some("it has fewer than three corners");
     }
@@ -198,29 +198,30 @@ fn edge_problems(faces: &[impl AsRef<[u32]>]) -> Vec<MeshProblem> {
     problems
 }
 
-/// Isolated vertices and vertices with several fans. The edges are manifold already, so the faces around a vertex form
-/// chains: as many as there are corners less inner edges, or a single closed fan.
 fn vertex_problems(count: usize, corners: &Corners) -> Vec<MeshProblem> {
-    let problem = |vertex: usize| {
-        let vertex = VertexId::new(vertex);
-        let corners = corners.at(vertex.0);
-        let Some(first) = corners.first() else { return Some(MeshProblem::IsolatedVertex(vertex)) };
-        // Walk both ways from the first corner; a single fan reaches all of them. Around the vertex, every corner joins the
-        // edge it comes in on with the edge it goes out on.
-        let mut reached = 1;
-        let mut at = first.before;
-        while let Some(c) = corners.iter().find(|c| c.after == at).filter(|c| *c != first) {
-            (at, reached) = (c.before, reached + 1);
+    (0..count as u32).into_par_iter().filter_map(|vertex| vertex_problem(vertex, corners)).collect()
+}
+
+/// Whether a vertex is isolated or has several fans. The edges are manifold already, so the faces around a vertex form chains: as many
+/// as there are corners less inner edges, or a single closed fan.
+pub(crate) fn vertex_problem(vertex: u32, corners: &Corners) -> Option<MeshProblem> {
+    let corners = corners.at(vertex);
+    let vertex = VertexId(vertex);
+    let Some(first) = corners.first() else { return Some(MeshProblem::IsolatedVertex(vertex)) };
+    // Walk both ways from the first corner; a single fan reaches all of them. Around the vertex, every corner joins the edge it
+    // comes in on with the edge it goes out on.
+    let mut reached = 1;
+    let mut at = first.before;
+    while let Some(c) = corners.iter().find(|c| c.after == at).filter(|c| *c != first) {
+        (at, reached) = (c.before, reached + 1);
+    }
+    if at != first.after || corners.len() == 1 {
+        at = first.after;
+        while let Some(c) = corners.iter().find(|c| c.before == at) {
+            (at, reached) = (c.after, reached + 1);
         }
-        if at != first.after || corners.len() == 1 {
-            at = first.after;
-            while let Some(c) = corners.iter().find(|c| c.before == at) {
-                (at, reached) = (c.after, reached + 1);
-            }
-        }
-        (reached != corners.len()).then_some(MeshProblem::NonManifoldVertex(vertex))
-    };
-    (0..count).into_par_iter().filter_map(problem).collect()
+    }
+    (reached != corners.len()).then_some(MeshProblem::NonManifoldVertex(vertex))
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ impl StitchMesh {
         for h in sides {
             let face = mesh.face(h);
             let corner = h.index() - mesh.first_half_edge(face).index();
-            draft.faces[face.index()].insert(corner + 1, middle.0);
+            draft.outline(face).insert(corner + 1, middle.0);
             let i = turn(self, h);
             let stitch = draft.stitch(face);
             if self.is_bottom(h) { add_bottom(stitch, i) } else { add_top(stitch, i) }

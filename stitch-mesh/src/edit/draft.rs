@@ -6,20 +6,18 @@ use crate::dye::Dye;
 use crate::ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 use crate::marks::Marks;
 use crate::mesh::PolygonMesh;
+use crate::reface::{Merged, Outline, Refacing};
 use crate::seam::sorted;
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{Place, StitchMesh};
 use crate::wrapping::Wrapping;
 use glam::DVec3;
-use smallvec::SmallVec;
-
-/// The corners of a face.
-pub type Outline = SmallVec<[u32; 4]>;
 
 /// The parts of a stitch mesh.
-pub struct Draft {
+pub struct Draft<'a> {
+    before: &'a PolygonMesh,
     pub positions: Vec<DVec3>,
-    pub faces: Vec<Outline>,
+    pub refacing: Refacing,
     pub stitches: Vec<Stitch>,
     pub dyes: Vec<Dye>,
     pub wrappings: Vec<Wrapping>,
@@ -30,22 +28,27 @@ pub struct Draft {
     survivors: Survivors,
 }
 
-impl Draft {
-    pub fn of(stitches: &StitchMesh) -> Self {
+impl<'a> Draft<'a> {
+    pub fn of(stitches: &'a StitchMesh) -> Self {
         let mesh = stitches.mesh();
+        let survivors = || Survivors {
+            vertices: (0..mesh.vertex_count()).map(|v| Some(VertexId::new(v))).collect(),
+            faces: mesh.faces().map(Some).collect(),
+        };
+        // Of a garment these are some megabytes.
+        let (of_stitches, (positions, survivors)) =
+            rayon::join(|| stitches.stitches().to_vec(), || (mesh.positions().to_vec(), survivors()));
         Self {
-            positions: mesh.positions().to_vec(),
-            faces: mesh.faces().map(|f| mesh.face_vertices(f).map(|v| v.0).collect()).collect(),
-            stitches: stitches.stitches().to_vec(),
+            before: mesh,
+            positions,
+            refacing: Refacing::default(),
+            stitches: of_stitches,
             dyes: stitches.dyes().to_vec(),
             wrappings: stitches.wrappings().to_vec(),
             places: stitches.places().to_vec(),
             marks: stitches.marks().clone(),
             changed: Vec::new(),
-            survivors: Survivors {
-                vertices: (0..mesh.vertex_count()).map(|v| Some(VertexId::new(v))).collect(),
-                faces: mesh.faces().map(Some).collect(),
-            },
+            survivors,
         }
     }
 
@@ -55,18 +58,28 @@ impl Draft {
         &mut self.stitches[face.index()]
     }
 
+    /// The vertices of a face, to be changed.
+    pub fn outline(&mut self, face: FaceId) -> &mut Outline {
+        let before = self.before;
+        let outlines = &mut self.refacing.outlines;
+        outlines.entry(face).or_insert_with(|| before.face_vertices(face).map(|v| v.0).collect())
+    }
+
     /// Merges vertex `b` into `a`, which goes to `position`. The later number goes; faces lose the edge between them.
     pub fn merge_vertices(&mut self, a: VertexId, b: VertexId, position: DVec3) {
-        let (stays, goes) = (a.min(b).0, a.max(b).0);
-        let now = |v: u32| if v == goes { stays } else { v - u32::from(v > goes) };
-        self.positions[stays as usize] = position;
-        self.positions.remove(goes as usize);
-        for face in &mut self.faces {
-            face.iter_mut().for_each(|v| *v = now(*v));
-            // The edge never closes the list of a face: that is the left wale edge.
-            face.dedup();
+        let merged = Merged { stays: a.min(b), goes: a.max(b) };
+        self.positions[merged.stays.index()] = position;
+        self.positions.remove(merged.goes.index());
+        for face in [a, b].into_iter().flat_map(|v| self.before.outgoing(v)).map(|h| self.before.face(h)) {
+            self.outline(face);
         }
-        let now = |v: VertexId| VertexId(now(v.0));
+        for outline in self.refacing.outlines.values_mut() {
+            outline.iter_mut().for_each(|v| *v = merged.now(VertexId(*v)).0);
+            // The edge never closes the list of a face: that is the left wale edge.
+            outline.dedup();
+        }
+        self.refacing.merged = Some(merged);
+        let now = |v: VertexId| merged.now(v);
         self.survivors.vertices.iter_mut().for_each(|v| *v = v.map(now));
         for cable in &mut self.marks.cables {
             cable.path.iter_mut().for_each(|v| *v = now(*v));
@@ -85,7 +98,10 @@ impl Draft {
             if f > goes { FaceId(f.0 - 1) } else { f }
         };
         let i = goes.index();
-        self.faces.remove(i);
+        self.refacing.gone = Some(goes);
+        self.refacing.outlines.remove(&goes);
+        let outlines = std::mem::take(&mut self.refacing.outlines);
+        self.refacing.outlines = outlines.into_iter().map(|(f, outline)| (now(f), outline)).collect();
         self.stitches.remove(i);
         self.dyes.remove(i);
         self.wrappings.remove(i);
@@ -96,9 +112,9 @@ impl Draft {
 
     /// Puts everything together again.
     pub fn finish(self) -> Result<Edited, EditError> {
-        let Self { positions, faces, mut stitches, dyes, wrappings, places, marks, changed, survivors } =
-            self;
-        let mesh = PolygonMesh::new(positions, &faces)?;
+        let Self { before, positions, refacing, mut stitches, .. } = self;
+        let Self { dyes, wrappings, places, marks, changed, survivors, .. } = self;
+        let mesh = before.refaced(positions, &refacing)?;
         for face in changed {
             let stitch = &mut stitches[face.index()];
             if stitch.bottoms() > MOST_BOTTOMS {
@@ -108,7 +124,8 @@ impl Draft {
             let borne = below.into_iter().any(|h| mesh.twin(h).is_some());
             mend(stitch, borne);
         }
-        let stitches = StitchMesh::new(mesh, stitches)?.with(dyes, wrappings, places, marks)?;
+        let others = refacing.outlines.into_keys();
+        let stitches = StitchMesh::refaced(mesh, stitches, others)?.with(dyes, wrappings, places, marks)?;
         Ok((stitches, survivors))
     }
 }

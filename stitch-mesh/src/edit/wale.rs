@@ -1,9 +1,10 @@
 //! Adding, removing and shifting wale edges.
 
-use super::draft::{Draft, Outline, inner_wale};
+use super::draft::{Draft, inner_wale};
 use super::reshape::{cut, join, pass_bottom, pass_top};
 use super::{EditError, Edited, End, Way};
 use crate::ids::{FaceId, VertexId};
+use crate::reface::Outline;
 use crate::stitch_mesh::StitchMesh;
 
 impl StitchMesh {
@@ -27,11 +28,12 @@ impl StitchMesh {
         }
         let mut draft = Draft::of(self);
         let [left, right] = cut(self.stitch(face), i, j);
-        draft.faces[face.index()] = outline(&below[..=i], &above[..=j]);
-        draft.faces.push(outline(&below[i..], &above[j..]));
+        *draft.outline(face) = outline(&below[..=i], &above[..=j]);
+        let new = FaceId::new(mesh.face_count());
+        draft.refacing.outlines.insert(new, outline(&below[i..], &above[j..]));
         *draft.stitch(face) = left;
         draft.stitches.push(right);
-        draft.stitch(FaceId::new(mesh.face_count()));
+        draft.stitch(new);
         draft.dyes.push(self.dyes()[face.index()]);
         draft.wrappings.push(self.wrappings()[face.index()]);
         draft.places.push(self.places()[face.index()]);
@@ -53,7 +55,7 @@ impl StitchMesh {
         below.extend(&more_below[1..]);
         above.extend(&more_above[1..]);
         let mut draft = Draft::of(self);
-        draft.faces[stays.index()] = outline(&below, &above);
+        *draft.outline(stays) = outline(&below, &above);
         *draft.stitch(stays) = join(self.stitch(left), self.stitch(right));
         draft.dyes[stays.index()] = self.dyes()[left.index()];
         draft.wrappings[stays.index()] = self.wrappings()[left.index()];
@@ -93,8 +95,8 @@ impl StitchMesh {
             }
         }
         let mut draft = Draft::of(self);
-        draft.faces[left.index()] = outline(&left_side.0, &left_side.1);
-        draft.faces[right.index()] = outline(&right_side.0, &right_side.1);
+        *draft.outline(left) = outline(&left_side.0, &left_side.1);
+        *draft.outline(right) = outline(&right_side.0, &right_side.1);
         let (mut l, mut r) = (self.stitch(left).clone(), self.stitch(right).clone());
         let pass = if end == End::Top { pass_top } else { pass_bottom };
         pass(&mut l, &mut r, way == Way::Right);
