@@ -4,6 +4,7 @@ use crate::project::Project;
 use crate::solids::solids;
 use anyhow::Result;
 use glam::DVec3;
+use rayon::prelude::*;
 use render::palette::{self, StitchColors};
 use render::{Drawing, Faces, Lines, Polygon, Segment};
 use sim_core::curves;
@@ -33,6 +34,9 @@ impl Stage {
     /// All stages, in the order of the flow.
     pub const ALL: [Self; 4] = [Self::Mesh, Self::Labels, Self::Stitches, Self::Yarn];
 }
+
+/// Faces or edges that are drawn by one thread.
+const PIECE: usize = 4096;
 
 /// Which faces show.
 pub type Shown<'a> = &'a (dyn Fn(FaceId) -> bool + Sync);
@@ -75,12 +79,28 @@ pub fn drawing_where(
 }
 
 /// The polygons of a mesh, coloured face by face.
-fn faces(mesh: &PolygonMesh, shown: Shown<'_>, color: impl Fn(usize) -> [f32; 3]) -> Faces {
-    let vertices = |f| if shown(f) { mesh.face_vertices(f).map(|v| v.0).collect() } else { SmallVec::new() };
-    Faces {
-        positions: mesh.positions().iter().map(|p| p.as_vec3()).collect(),
-        polygons: mesh.faces().map(|f| Polygon { vertices: vertices(f), color: color(f.index()) }).collect(),
-    }
+fn faces(mesh: &PolygonMesh, shown: Shown<'_>, color: impl Fn(usize) -> [f32; 3] + Sync) -> Faces {
+    let mut faces = Faces::default();
+    draw_faces(&mut faces, mesh, shown, color);
+    faces
+}
+
+fn draw_faces(
+    faces: &mut Faces,
+    mesh: &PolygonMesh,
+    shown: Shown<'_>,
+    color: impl Fn(usize) -> [f32; 3] + Sync,
+) {
+    let polygon = |f: usize| {
+        let face = FaceId::new(f);
+        let vertices =
+            if shown(face) { mesh.face_vertices(face).map(|v| v.0).collect() } else { SmallVec::new() };
+        Polygon { vertices, color: color(f) }
+    };
+    let positions = mesh.positions().par_iter().with_min_len(PIECE);
+    positions.map(|p| p.as_vec3()).collect_into_vec(&mut faces.positions);
+    let polygons = (0..mesh.face_count()).into_par_iter().with_min_len(PIECE);
+    polygons.map(polygon).collect_into_vec(&mut faces.polygons);
 }
 
 /// The edge as a line on the screen.
@@ -173,22 +193,41 @@ pub fn stitch_drawing(
     shown: Shown<'_>,
     colors: StitchColors,
 ) -> Drawing {
+    let mut drawing = Drawing::default();
+    draw_stitches(&mut drawing, stitches, rows, shown, colors);
+    drawing
+}
+
+/// Makes a drawing the picture of a stitch mesh with these rows. The memory of what it was before is used again: after an edit of a garment
+/// that is most of the work.
+pub fn draw_stitches(
+    drawing: &mut Drawing,
+    stitches: &StitchMesh,
+    rows: &[Row],
+    shown: Shown<'_>,
+    colors: StitchColors,
+) {
     let mesh = stitches.mesh();
-    let line = |e| {
-        let wale = stitches.is_wale(mesh.edge_sides(e).0);
-        edge_line(mesh, e, [0.16, 0.14, 0.12], if wale { 1.5 } else { 1.0 })
+    let line = |e: usize| {
+        let edge = EdgeId::new(e);
+        let (side, twin) = mesh.edge_sides(edge);
+        let wale = stitches.is_wale(side);
+        let shown = shown(mesh.face(side)) || twin.is_some_and(|t| shown(mesh.face(t)));
+        let width = if shown { if wale { 1.5 } else { 1.0 } } else { 0.0 };
+        edge_line(mesh, edge, [0.16, 0.14, 0.12], width)
     };
-    let (faces, segments) = rayon::join(
+    let Drawing { faces, lines: Lines { segments }, .. } = drawing;
+    rayon::join(
         || {
             let colors = stitch_colors(stitches, rows, colors);
-            faces(mesh, shown, |f| colors[f])
+            draw_faces(faces, mesh, shown, |f| colors[f]);
         },
         || {
-            let crossings = stitches.cables().iter().flat_map(|cable| crossing(stitches, cable, shown));
-            shown_edges(mesh, shown).map(line).chain(crossings).collect()
+            let edges = (0..mesh.edge_count()).into_par_iter().with_min_len(PIECE);
+            edges.map(line).collect_into_vec(segments);
+            segments.extend(stitches.cables().iter().flat_map(|cable| crossing(stitches, cable, shown)));
         },
     );
-    Drawing { faces, lines: Lines { segments }, ..Drawing::default() }
 }
 
 /// A cable as knitters draw it: a line for each strand, from the stitches below to those above that it goes to; those further back are

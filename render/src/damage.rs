@@ -147,42 +147,65 @@ pub(crate) fn runs(count: usize, holds: impl Fn(usize) -> bool) -> Vec<Range<usi
     runs
 }
 
-/// What is in one of two lists only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Only {
-    /// In the first, at this place.
-    Before(usize),
-    /// In the second.
-    After(usize),
+/// Where two lists differ, if they are the same but for some things that were changed, put in or taken out.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Differences {
+    /// Places in the first list of what is not in the second.
+    pub gone: Vec<usize>,
+    /// Places in the second list of what was not in the first.
+    pub come: Vec<usize>,
 }
 
-/// Where two lists of these lengths differ, if they are the same but for some things that were changed, put in or taken out.
-pub(crate) fn differences(
-    lengths: [usize; 2],
-    same: impl Fn(usize, usize) -> bool,
-    mut see: impl FnMut(Only),
-) {
-    let [n, m] = lengths;
-    let (mut i, mut j) = (0, 0);
-    while i < n && j < m {
-        let (gone, come) = match () {
-            () if same(i, j) => (false, false),
-            () if i + 1 < n && same(i + 1, j) => (true, false),
-            () if j + 1 < m && same(i, j + 1) => (false, true),
-            () => (true, true),
-        };
-        if gone {
-            see(Only::Before(i));
+impl Differences {
+    /// Compares lists of these lengths, from both ends at once.
+    pub fn of(lengths: [usize; 2], same: impl Fn(usize, usize) -> bool + Sync) -> Self {
+        let [n, m] = lengths;
+        let least = n.min(m);
+        let (head, tail) = rayon::join(
+            || (0..least).find(|i| !same(*i, *i)).unwrap_or(least),
+            || (0..least).find(|i| !same(n - 1 - i, m - 1 - i)).unwrap_or(least),
+        );
+        let tail = tail.min(least - head);
+        let [n, m] = [n - tail, m - tail];
+        let mut found = Self::default();
+        let (mut i, mut j) = (head, head);
+        while i < n && j < m {
+            let (gone, come) = match () {
+                () if same(i, j) => (false, false),
+                () if i + 1 < n && same(i + 1, j) => (true, false),
+                () if j + 1 < m && same(i, j + 1) => (false, true),
+                () => (true, true),
+            };
+            if gone {
+                found.gone.push(i);
+            }
+            if come {
+                found.come.push(j);
+            }
+            let step = gone == come;
+            i += usize::from(step || gone);
+            j += usize::from(step || come);
         }
-        if come {
-            see(Only::After(j));
-        }
-        let step = gone == come;
-        i += usize::from(step || gone);
-        j += usize::from(step || come);
+        found.gone.extend(i..n);
+        found.come.extend(j..m);
+        found
     }
-    (i..n).for_each(|i| see(Only::Before(i)));
-    (j..m).for_each(|j| see(Only::After(j)));
+
+    /// What everything in the second list, `count` long, was in the first; none for what was not there.
+    pub fn before(&self, count: usize) -> impl Iterator<Item = Option<usize>> + '_ {
+        let (mut gone, mut come) = (self.gone.iter().peekable(), self.come.iter().peekable());
+        let mut i = 0;
+        (0..count).map(move |j| {
+            if come.next_if(|c| **c == j).is_some() {
+                return None;
+            }
+            while gone.next_if(|g| **g == i).is_some() {
+                i += 1;
+            }
+            i += 1;
+            Some(i - 1)
+        })
+    }
 }
 
 #[cfg(test)]
@@ -193,17 +216,21 @@ mod tests {
     fn differences_are_found_and_nothing_else() {
         let found = |a: &str, b: &str| {
             let [x, y] = [a, b].map(|t| t.as_bytes().to_vec());
-            let mut found = Vec::new();
-            differences([x.len(), y.len()], |i, j| x[i] == y[j], |only| found.push(only));
-            found
+            let found = Differences::of([x.len(), y.len()], |i, j| x[i] == y[j]);
+            for (j, before) in found.before(y.len()).enumerate() {
+                assert_eq!(before.map(|i| x[i]), (!found.come.contains(&j)).then_some(y[j]));
+            }
+            (found.gone, found.come)
         };
-        use Only::{After, Before};
-        assert_eq!(found("abcd", "abcd"), []);
-        assert_eq!(found("abcd", "abxd"), [Before(2), After(2)]);
-        assert_eq!(found("abcd", "abd"), [Before(2)]);
-        assert_eq!(found("abd", "abcd"), [After(2)]);
-        assert_eq!(found("ab", "abcd"), [After(2), After(3)]);
-        assert_eq!(found("", "a"), [After(0)]);
+        assert_eq!(found("abcd", "abcd"), (vec![], vec![]));
+        assert_eq!(found("abcd", "abxd"), (vec![2], vec![2]));
+        assert_eq!(found("abcd", "abd"), (vec![2], vec![]));
+        assert_eq!(found("abd", "abcd"), (vec![], vec![2]));
+        assert_eq!(found("ab", "abcd"), (vec![], vec![2, 3]));
+        assert_eq!(found("abcd", "cd"), (vec![0, 1], vec![]));
+        assert_eq!(found("aaa", "aa"), (vec![2], vec![]));
+        assert_eq!(found("abcdef", "aXceYf"), (vec![1, 3], vec![1, 4]));
+        assert_eq!(found("", "a"), (vec![], vec![0]));
     }
 
     #[test]

@@ -80,14 +80,15 @@ pub(crate) fn triangles(corners: usize) -> usize {
     }
 }
 
-/// A line between two points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A line between two points, as the GPU reads it, too.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Segment {
     /// Its ends [m].
     pub ends: [Vec3; 2],
     /// Colour, linear RGB.
     pub color: [f32; 3],
-    /// Width on the screen [px].
+    /// Width on the screen [px]; a line without any is not drawn.
     pub width: f32,
 }
 

@@ -25,6 +25,7 @@ mod frame;
 mod gpu;
 mod light;
 mod lines;
+mod mirror;
 mod occlusion;
 mod offscreen;
 pub mod palette;

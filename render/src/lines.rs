@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::damage::{Damage, Only, Part, differences, runs};
-use crate::drawing::Lines;
+use crate::damage::{Damage, Differences, Part, runs};
+use crate::drawing::{Lines, Segment};
+use crate::mirror::Mirror;
 use crate::pipeline::{COLOR_FORMAT, Pipeline, shader};
-use crate::scene::GrowingBuffer;
 use crate::{Gpu, RenderError};
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
@@ -14,20 +14,15 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
 /// Lines shorter than so many of their widths on the screen, in the mean, are left out.
 const ROOM: f32 = 3.0;
 
-/// A segment as the GPU reads it, one instance of a quad.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-struct Instance {
-    ends: [Vec3; 2],
-    color: [f32; 3],
-    width: f32,
-}
+/// Where there is no line: nothing of it is drawn.
+const HOLE: Segment = Segment { ends: [Vec3::ZERO; 2], color: [0.0; 3], width: 0.0 };
 
 /// Lines on the GPU.
 #[derive(Debug)]
 pub(crate) struct LineMesh {
-    instances: GrowingBuffer,
-    lines: Vec<Instance>,
+    lines: Mirror<Segment>,
+    /// Where each line is among these.
+    places: Vec<u32>,
     /// Mean length [m] and width [px], and what they were when all was drawn last.
     mean: [f32; 2],
     drawn: [f32; 2],
@@ -36,35 +31,44 @@ pub(crate) struct LineMesh {
 impl LineMesh {
     pub fn new() -> Self {
         Self {
-            instances: GrowingBuffer::new("lines", wgpu::BufferUsages::VERTEX),
-            lines: Vec::new(),
+            lines: Mirror::new("lines", wgpu::BufferUsages::VERTEX),
+            places: Vec::new(),
             mean: [0.0; 2],
             drawn: [0.0; 2],
         }
     }
 
     pub fn set(&mut self, gpu: &Gpu, lines: &Lines, damage: &mut Damage) -> Result<(), RenderError> {
-        let instance = |s: &crate::Segment| Instance { ends: s.ends, color: s.color, width: s.width };
-        let instances: Vec<_> = lines.segments.iter().map(instance).collect();
-        let before = std::mem::replace(&mut self.lines, instances);
-        let (now, mut same) = (&self.lines, before.len());
-        differences(
-            [before.len(), now.len()],
-            |i, j| before[i] == now[j],
-            |only| {
-                let (line, place) = match only {
-                    Only::Before(i) => (&before[i], i),
-                    Only::After(j) => (&now[j], j),
-                };
-                damage.add(line.ends, line.width);
-                same = same.min(place);
-            },
-        );
-        let sum = |of: fn(&crate::Segment) -> f32| lines.segments.iter().map(of).sum::<f32>();
-        let sums = [sum(|s| s.ends[0].distance(s.ends[1])), sum(|s| s.width)];
-        self.mean = sums.map(|sum| sum / lines.segments.len().max(1) as f32);
-        let (bytes, limit) = (bytemuck::cast_slice(&self.lines), gpu.device.limits().max_buffer_size);
-        self.instances.write_from(gpu, bytes, same * size_of::<Instance>(), limit)
+        let segments = &lines.segments;
+        let (now, places) = (self.lines.items(), &self.places);
+        let at = |i: usize| &now[places[i] as usize];
+        let found = Differences::of([places.len(), segments.len()], |i, j| *at(i) == segments[j]);
+        let gone = found.gone.iter().map(|i| at(*i));
+        gone.chain(found.come.iter().map(|j| &segments[*j]))
+            .for_each(|line| damage.add(line.ends, line.width));
+
+        let holes = now.len() - places.len() + found.gone.len();
+        if self.lines.has_too_many_holes(holes) {
+            self.lines.clear();
+            self.lines.extend(segments.iter().copied());
+            self.places = (0..segments.len() as u32).collect();
+        } else if found != Differences::default() {
+            for place in found.gone.iter().map(|i| self.places[*i] as usize) {
+                self.lines.fill(place..place + 1, HOLE);
+            }
+            let mut end = self.lines.items().len() as u32..;
+            self.lines.extend(found.come.iter().map(|j| segments[*j]));
+            let before = found.before(segments.len());
+            let places =
+                before.filter_map(|before| before.map_or_else(|| end.next(), |i| Some(self.places[i])));
+            self.places = places.collect();
+        }
+        let drawn = segments.iter().filter(|s| s.width > 0.0);
+        let add =
+            |[n, l, w]: [f32; 3], s: &Segment| [n + 1.0, l + s.ends[0].distance(s.ends[1]), w + s.width];
+        let [count, length, width] = drawn.fold([0.0; 3], add);
+        self.mean = [length, width].map(|sum| sum / count.max(1.0));
+        self.lines.upload(gpu)
     }
 }
 
@@ -101,7 +105,7 @@ impl LinePipeline {
             fragment: Some("line_fragment"),
             layouts: &[frame],
             vertices: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Instance>() as u64,
+                array_stride: size_of::<Segment>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes: &ATTRIBUTES,
             })],
@@ -129,11 +133,12 @@ impl LinePipeline {
 
     /// Draws lines, all or those that reach into a part of the picture.
     pub fn draw(&self, pass: &mut wgpu::RenderPass, mesh: &LineMesh, part: Option<&Part>) {
-        if let Some(buffer) = mesh.instances.buffer().filter(|_| !mesh.lines.is_empty()) {
+        if let Some(buffer) = mesh.lines.buffer() {
             pass.set_pipeline(&self.0);
             pass.set_vertex_buffer(0, buffer.slice(..));
-            let lines = &mesh.lines;
+            let lines = mesh.lines.items();
             let reached = |line: usize| part.is_none_or(|p| p.is_reached_by(lines[line].ends.into_iter()));
+            let reached = |line: usize| lines[line].width > 0.0 && reached(line);
             for run in runs(lines.len(), reached) {
                 pass.draw(0..4, run.start as u32..run.end as u32);
             }

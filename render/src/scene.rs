@@ -58,8 +58,8 @@ impl Scene {
     }
 
     /// Shows the faces that were set before in other colours, [polygon_count].
-    pub fn set_colors(&mut self, gpu: &Gpu, colors: &[[f32; 3]]) {
-        self.faces.set_colors(gpu, colors, &mut self.damage);
+    pub fn set_colors(&mut self, gpu: &Gpu, colors: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.faces.set_colors(gpu, colors, &mut self.damage)
     }
 
     /// Says that what the scene holds now has been drawn.

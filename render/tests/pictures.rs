@@ -370,12 +370,12 @@ fn a_part_drawn_again_is_as_if_all_were() {
         let mut old = picture(&mut scene, true);
         assert!(picture(&mut scene, false) == old, "nothing has changed");
         let changes: [&dyn Fn(&mut Scene); 6] = [
-            &|scene| scene.set_colors(gpu, &[RED, GREEN, GREEN, RED]),
+            &|scene| scene.set_colors(gpu, &[RED, GREEN, GREEN, RED]).unwrap(),
             &|scene| scene.set(gpu, &row_of(&[RED, GREEN, GREEN])).unwrap(),
             &|scene| scene.set(gpu, &row_of(&[RED, RED, GREEN, GREEN])).unwrap(),
             &|scene| scene.set_marks(gpu, &Lines { segments: vec![mark(-0.2), mark(0.1)] }).unwrap(),
             &|scene| scene.set_marks(gpu, &Lines { segments: vec![mark(0.1)] }).unwrap(),
-            &|scene| scene.set_colors(gpu, &[GREEN, RED, GREEN, GREEN]),
+            &|scene| scene.set_colors(gpu, &[GREEN, RED, GREEN, GREEN]).unwrap(),
         ];
         for (i, change) in changes.into_iter().enumerate() {
             change(&mut scene);
@@ -410,9 +410,9 @@ fn what_is_said_to_be_drawn_is_not_drawn_again() {
     let mut scene = Scene::new();
     scene.set(gpu, &row_of(&[RED, RED, RED, RED])).unwrap();
     picture(&scene, true);
-    scene.set_colors(gpu, &[GREEN, RED, RED, RED]);
+    scene.set_colors(gpu, &[GREEN, RED, RED, RED]).unwrap();
     scene.settle();
-    scene.set_colors(gpu, &[GREEN, RED, RED, GREEN]);
+    scene.set_colors(gpu, &[GREEN, RED, RED, GREEN]).unwrap();
     let part = picture(&scene, false);
     assert!(part != picture(&scene, true));
 }

@@ -8,6 +8,7 @@ use crate::ids::{HalfEdgeId, VertexId};
 use crate::seam::Seam;
 use crate::stitch_mesh::{Place, StitchMesh};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 impl StitchMesh {
     /// Takes over stitches, colours, wrappings and marks from an earlier stitch mesh of the same input. Cables, seams and live
@@ -25,8 +26,8 @@ impl StitchMesh {
             let Some(was) = was else { continue };
             // A stitch with other numbers of loops, or one that would hold nothing here, stays what it is now.
             if self.set_stitch(face, old.stitch(was).clone()).is_ok() {
-                self.dyes[face.index()] = old.dyes()[was.index()];
-                self.wrappings[face.index()] = old.wrappings()[was.index()];
+                Arc::make_mut(&mut self.dyes)[face.index()] = old.dyes()[was.index()];
+                Arc::make_mut(&mut self.wrappings)[face.index()] = old.wrappings()[was.index()];
                 now[was.index()] = Some(face);
             }
         }

@@ -10,6 +10,7 @@ use crate::stitch_mesh::{Place, StitchMesh};
 use crate::wrapping::{Wrapping, WrappingError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// What is marked on the edges of a stitch mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -68,11 +69,12 @@ impl StitchMesh {
     /// Where one does not fit.
     pub fn with(
         mut self,
-        dyes: Vec<Dye>,
-        wrappings: Vec<Wrapping>,
-        places: Vec<Option<Place>>,
+        dyes: impl Into<Arc<Vec<Dye>>>,
+        wrappings: impl Into<Arc<Vec<Wrapping>>>,
+        places: impl Into<Arc<Vec<Option<Place>>>>,
         marks: Marks,
     ) -> Result<Self, MarkError> {
+        let (dyes, wrappings, places) = (dyes.into(), wrappings.into(), places.into());
         let faces = self.mesh().face_count();
         let counts = [("colours", dyes.len()), ("wrappings", wrappings.len()), ("places", places.len())];
         for (what, given) in counts {
@@ -80,7 +82,7 @@ impl StitchMesh {
                 return Err(MarkError::Count { what, given, faces });
             }
         }
-        for (face, wrapping) in self.mesh().faces().zip(&wrappings) {
+        for (face, wrapping) in self.mesh().faces().zip(&*wrappings) {
             wrapping.validate().map_err(|error| MarkError::Wrapping(face, error))?;
         }
         (self.dyes, self.wrappings, self.places) = (dyes, wrappings, places);

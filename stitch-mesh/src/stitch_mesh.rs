@@ -22,6 +22,7 @@ use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
 use crate::wrapping::{Wrapping, WrappingError};
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -32,10 +33,11 @@ pub struct StitchMesh {
     /// Shared between all states of a fabric that is edited without changing its faces.
     mesh: Arc<PolygonMesh>,
     stitches: Vec<Stitch>,
-    /// Colour of the yarn with which each stitch is worked.
-    pub(crate) dyes: Vec<Dye>,
-    pub(crate) wrappings: Vec<Wrapping>,
-    pub(crate) places: Vec<Option<Place>>,
+    /// Colour of the yarn with which each stitch is worked. Shared, like the wrappings and places, between states in which they are the
+    /// same.
+    pub(crate) dyes: Arc<Vec<Dye>>,
+    pub(crate) wrappings: Arc<Vec<Wrapping>>,
+    pub(crate) places: Arc<Vec<Option<Place>>>,
     pub(crate) marks: Marks,
 }
 
@@ -113,12 +115,19 @@ impl StitchMesh {
     /// # Errors
     /// [`StitchMeshError`] where an invariant does not hold.
     pub fn new(mesh: PolygonMesh, stitches: Vec<Stitch>) -> Result<Self, StitchMeshError> {
-        let stitch_mesh = Self::unchecked(mesh, stitches)?;
+        let faces = stitches.len();
+        let stitch_mesh = Self {
+            dyes: Arc::new(vec![Dye::UNDYED; faces]),
+            wrappings: Arc::new(vec![Wrapping::OF_MATERIAL; faces]),
+            places: Arc::new(vec![None; faces]),
+            ..Self::unchecked(mesh, stitches)?
+        };
         stitch_mesh.check(stitch_mesh.mesh.faces())?;
         Ok(stitch_mesh)
     }
 
-    /// As [`Self::new`], where all faces but some have been beside the same ones in a stitch mesh before.
+    /// As [`Self::new`], where all faces but some have been beside the same ones in a stitch mesh before. Colours, wrappings and places are
+    /// still to be given.
     pub(crate) fn refaced(
         mesh: PolygonMesh,
         stitches: Vec<Stitch>,
@@ -132,20 +141,12 @@ impl StitchMesh {
         Ok(stitch_mesh)
     }
 
+    /// Only as many stitches as faces, and nothing more of them.
     fn unchecked(mesh: PolygonMesh, stitches: Vec<Stitch>) -> Result<Self, StitchMeshError> {
         if stitches.len() != mesh.face_count() {
             return Err(StitchMeshError::Count { faces: mesh.face_count(), stitches: stitches.len() });
         }
-        let faces = mesh.face_count();
-        let stitch_mesh = Self {
-            mesh: Arc::new(mesh),
-            stitches,
-            dyes: vec![Dye::UNDYED; faces],
-            wrappings: vec![Wrapping::OF_MATERIAL; faces],
-            places: vec![None; faces],
-            marks: Marks::default(),
-        };
-        Ok(stitch_mesh)
+        Ok(Self { mesh: Arc::new(mesh), stitches, ..Self::empty() })
     }
 
     /// Looks through some faces.
@@ -167,9 +168,9 @@ impl StitchMesh {
         Self {
             mesh: Arc::new(PolygonMesh::empty()),
             stitches: Vec::new(),
-            dyes: Vec::new(),
-            wrappings: Vec::new(),
-            places: Vec::new(),
+            dyes: Arc::default(),
+            wrappings: Arc::default(),
+            places: Arc::default(),
             marks: Marks::default(),
         }
     }
@@ -251,7 +252,7 @@ impl StitchMesh {
     /// # Errors
     /// There is no such face.
     pub fn set_dye(&mut self, face: FaceId, dye: Dye) -> Result<(), StitchMeshError> {
-        *self.dyes.get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? = dye;
+        *Arc::make_mut(&mut self.dyes).get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? = dye;
         Ok(())
     }
 
@@ -266,7 +267,8 @@ impl StitchMesh {
     /// There is no such face, or no stitch is wrapped so; nothing is changed then.
     pub fn set_wrapping(&mut self, face: FaceId, wrapping: Wrapping) -> Result<(), StitchMeshError> {
         wrapping.validate()?;
-        *self.wrappings.get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? = wrapping;
+        *Arc::make_mut(&mut self.wrappings).get_mut(face.index()).ok_or(StitchMeshError::NoFace(face))? =
+            wrapping;
         Ok(())
     }
 
@@ -348,12 +350,13 @@ impl StitchMesh {
             }
         }
         // Which row lies on which, each pair once for every run of faces in which they meet.
-        let mut stacked: Vec<[usize; 2]> = Vec::new();
-        for (r, row) in rows.iter().enumerate() {
+        let below = |(r, row): (usize, &Row)| {
             let below = row.faces.iter().flat_map(|f| self.below(*f)).map(|f| [row_of[f.index()], r]);
-            stacked.extend(below);
-            stacked.dedup();
-        }
+            let mut below: Vec<_> = below.collect();
+            below.dedup();
+            below
+        };
+        let stacked: Vec<[usize; 2]> = rows.par_iter().enumerate().flat_map_iter(below).collect();
         // Height of a row: one more than the highest below it. A garment knitted in a circle (a Möbius band of rows) has no
         // lowest row; going round more often than there are rows says so, and the heights so far are as good as any.
         let mut height = vec![0usize; rows.len()];

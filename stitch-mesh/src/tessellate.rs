@@ -17,6 +17,7 @@ use crate::mesh::{MeshError, PolygonMesh};
 use crate::stitch::Stitch;
 use crate::stitch_mesh::{Place, StitchMesh, StitchMeshError};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// Why a labelled mesh cannot be tessellated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,7 +78,7 @@ pub fn tessellate(labelled: &LabelledMesh, counts: &EdgeCounts) -> Result<Stitch
     }
     let mesh = PolygonMesh::new(out.positions, &out.faces)?;
     let mut stitches = StitchMesh::new(mesh, out.stitches)?;
-    stitches.places = out.places.into_iter().map(Some).collect();
+    stitches.places = Arc::new(out.places.into_iter().map(Some).collect());
     Ok(stitches)
 }
 

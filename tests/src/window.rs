@@ -12,7 +12,7 @@ use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_set
 use egui_wgpu::RendererOptions;
 use glam::{DVec3, Vec4};
 use render::{Bounds, Camera, Gpu, NamedView};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::ids::FaceId;
@@ -25,6 +25,8 @@ pub struct Window {
     /// The harness.
     pub harness: Harness<'static, Editor>,
     gpu: Gpu,
+    /// Told whenever there is something new to see.
+    woken: Receiver<()>,
     /// Told whenever the window is at rest; dropped with it, which ends the watch.
     watch: Sender<()>,
 }
@@ -53,14 +55,17 @@ impl Window {
         let painter = create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
         let gpu = Gpu::new(&painter.adapter, &painter.device, &painter.queue).unwrap();
         let screen = Screen::new(gpu.clone(), painter.target_format).unwrap();
-        let editor = Editor::new(project, None, Some(screen), || ()).unwrap();
+        let (wake, woken) = channel();
+        // Whoever wakes the window after it has gone wakes nobody.
+        let wake = move || wake.send(()).unwrap_or_default();
+        let editor = Editor::new(project, None, Some(screen), wake).unwrap();
         let harness = Harness::builder()
             .with_size([1360.0, 860.0])
             .with_step_dt(1.0 / 60.0) // two clicks in as many frames are a double click
             .with_accessibility_check(false) // at every step; here once, in a test of its own
             .renderer(WgpuTestRenderer::from_render_state(painter))
             .build_ui_state(|ui, editor: &mut Editor| editor.ui(ui), editor);
-        let mut window = Self { harness, gpu, watch: watch() };
+        let mut window = Self { harness, gpu, woken, watch: watch() };
         window.rest();
         window
     }
@@ -96,10 +101,14 @@ impl Window {
 
     /// Frames until something is so and drawn. No picture is fetched.
     pub fn show(&mut self, is: impl Fn(&Editor) -> bool) {
-        while !is(self.editor()) {
+        loop {
+            while self.woken.try_recv().is_ok() {}
             self.harness.step();
-            // A window sleeps until it is woken.
-            std::thread::sleep(Duration::from_millis(1));
+            if is(self.editor()) {
+                break;
+            }
+            // It sleeps until it is woken, or has something to move itself.
+            let _ = self.woken.recv_timeout(Duration::from_millis(100));
         }
         self.gpu.device.poll(egui_wgpu::wgpu::PollType::wait_indefinitely()).unwrap();
     }

@@ -62,6 +62,8 @@ pub struct Editor {
     pub(super) selections: [Selection; 2],
     /// What the screen shows beside yarn, for picking; polygons and their sides are those of the mesh.
     pub(super) faces: Faces,
+    /// The lines on the screen.
+    pub(super) lines: Lines,
     /// Whether stitches have the colours of their strain.
     pub(super) strained: bool,
     /// Stitches on their way, as they were shown last.
@@ -140,6 +142,7 @@ impl Editor {
             typing: false,
             selections: [Selection::new(Mode::Edge), Selection::new(Mode::Face)],
             faces: Faces::default(),
+            lines: Lines::default(),
             strained: false,
             preview: None,
             drawn: None,
@@ -176,6 +179,7 @@ impl Editor {
         // Keys and buttons may have gone to another stage: the pointer has to find the faces of that one.
         self.show_news();
         super::viewport::show(self, ui);
+        self.session.has_shown(self.view.revision);
         super::search::show(self, ui.ctx());
         panels::leaving::show(self, ui.ctx());
         if self.session.is_busy() {

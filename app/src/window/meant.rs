@@ -24,7 +24,7 @@ impl Editor {
         }
     }
 
-    fn surface_index(&self) -> usize {
+    pub(super) fn surface_index(&self) -> usize {
         usize::from(matches!(self.surface(), Surface::Stitched(_)))
     }
 

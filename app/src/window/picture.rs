@@ -3,7 +3,7 @@
 use super::editor::Editor;
 use super::selection::Mode;
 use super::strung::Strung;
-use crate::drawing::{Stage, drawing_where, stitch_colors, stitch_drawing};
+use crate::drawing::{Stage, draw_stitches, drawing_where, stitch_colors};
 use crate::solids::solids;
 use glam::Vec3;
 use render::{Drawing, Faces, Lines, Polygon, Segment, Solids, YarnLayout, palette};
@@ -55,20 +55,20 @@ impl Editor {
     }
 
     fn show_polygons(&mut self, stage: Stage) {
-        let drawing = match stage {
+        let hidden = &self.selections[self.surface_index()].hidden;
+        let shown = |f: FaceId| !hidden.contains(&f);
+        let (project, colors) = (&self.view.project, self.stitch_colors);
+        let drawing = match (stage, &project.fabric, &self.view.fabric_rows) {
             // The yarn comes with the snapshots, laid out in the simulation's thread.
-            Stage::Yarn => Drawing { solids: self.solids_now(), ..Drawing::default() },
-            stage => {
-                let hidden = &self.selection().hidden;
-                let (project, colors) = (&self.view.project, self.stitch_colors);
-                let shown = |f: FaceId| !hidden.contains(&f);
-                match (&project.fabric, &self.view.fabric_rows) {
-                    (Some(fabric), Some(rows)) if stage == Stage::Stitches => {
-                        stitch_drawing(&fabric.stitches, &rows.rows, &shown, colors)
-                    }
-                    _ => drawing_where(project, stage, &shown, colors).unwrap_or_default(),
-                }
+            (Stage::Yarn, ..) => Drawing { solids: self.solids_now(), ..Drawing::default() },
+            (Stage::Stitches, Some(fabric), Some(rows)) => {
+                let faces = std::mem::take(&mut self.faces);
+                let mut drawing =
+                    Drawing { faces, lines: std::mem::take(&mut self.lines), ..Drawing::default() };
+                draw_stitches(&mut drawing, &fabric.stitches, &rows.rows, &shown, colors);
+                drawing
             }
+            _ => drawing_where(project, stage, &shown, colors).unwrap_or_default(),
         };
         let shown = self.screen.as_mut().map(|screen| screen.set(&drawing));
         self.report(shown);
@@ -76,6 +76,7 @@ impl Editor {
             self.show_curves();
         }
         self.faces = if stage == Stage::Yarn { self.loop_faces() } else { drawing.faces };
+        self.lines = drawing.lines;
     }
 
     /// Says what could not be shown.
@@ -187,9 +188,8 @@ impl Editor {
                 *color = [0, 1, 2].map(|i| mix(color[i], palette::SELECTED[i]));
             }
         }
-        if let Some(screen) = &mut self.screen {
-            screen.set_colors(&colors);
-        }
+        let shown = self.screen.as_mut().map(|screen| screen.set_colors(&colors));
+        self.report(shown);
     }
 
     /// Colours stitches by strain, or by kind.

@@ -48,8 +48,11 @@ impl Screen {
     }
 
     /// Shows the faces set last in other colours.
-    pub fn set_colors(&mut self, colors: &[[f32; 3]]) {
-        self.scene.set_colors(&self.gpu, colors);
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_colors(&mut self, colors: &[[f32; 3]]) -> Result<()> {
+        Ok(self.scene.set_colors(&self.gpu, colors)?)
     }
 
     /// Replaces the faces only.

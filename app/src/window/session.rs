@@ -24,11 +24,14 @@ use patterns::diagram::Course;
 use sim_core::mesh_relax::{MeshRelaxation, StepFacts};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::Thread;
 use std::time::{Duration, Instant};
 
+/// How long yarn waits for the stitches to be shown, should the window not be drawn just now.
+const PATIENCE: Duration = Duration::from_millis(50);
 /// How often work that goes on is looked at, for whether somebody has cancelled it.
 const LOOK: Duration = Duration::from_millis(10);
 
@@ -127,6 +130,9 @@ pub struct Session {
     latest: Arc<Mutex<(Arc<View>, Arc<Survey>)>>,
     waiting: Arc<AtomicUsize>,
     work: Arc<Mutex<Option<Work>>>,
+    /// The revision that the window has shown.
+    shown: Arc<AtomicU64>,
+    thread: Thread,
 }
 
 /// Asks for another frame.
@@ -157,12 +163,19 @@ impl Session {
         let latest = Arc::new(Mutex::new((view, survey)));
         let waiting = Arc::new(AtomicUsize::new(0));
         let (slot, count, work_slot) = (Arc::clone(&latest), Arc::clone(&waiting), Arc::clone(&work));
-        std::thread::Builder::new().name("document".to_owned()).spawn(move || {
+        let shown = Arc::new(AtomicU64::new(0));
+        let seen = Arc::clone(&shown);
+        let document = std::thread::Builder::new().name("document".to_owned()).spawn(move || {
             for (request, yarn) in received {
                 let view = worker.carry_out(request, yarn);
                 lock(&slot).0 = Arc::clone(&view);
                 *lock(&work_slot) = None;
                 wake();
+                // Drawing the stitches and laying their yarn both take all processors: the one that is waited for goes first.
+                let until = Instant::now() + PATIENCE;
+                while seen.load(Ordering::Acquire) < view.revision && Instant::now() < until {
+                    std::thread::park_timeout(until.saturating_duration_since(Instant::now()));
+                }
                 // Of a state that is about to change nobody needs to know more.
                 if count.load(Ordering::Acquire) == 1 {
                     if let Some(fabric) = &view.project.fabric {
@@ -175,7 +188,15 @@ impl Session {
                 wake();
             }
         })?;
-        Ok(Self { requests, latest, waiting, work })
+        let thread = document.thread().clone();
+        Ok(Self { requests, latest, waiting, work, shown, thread })
+    }
+
+    /// Says which revision the window has drawn.
+    pub fn has_shown(&self, revision: u64) {
+        if self.shown.swap(revision, Ordering::Release) != revision {
+            self.thread.unpark();
+        }
     }
 
     /// Asks for something. `yarn` is where the simulation has brought the yarn, if it is running.

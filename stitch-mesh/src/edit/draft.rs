@@ -12,6 +12,7 @@ use crate::stitch::Stitch;
 use crate::stitch_mesh::{Place, StitchMesh};
 use crate::wrapping::Wrapping;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// The parts of a stitch mesh.
 pub struct Draft<'a> {
@@ -19,9 +20,9 @@ pub struct Draft<'a> {
     pub positions: Vec<DVec3>,
     pub refacing: Refacing,
     pub stitches: Vec<Stitch>,
-    pub dyes: Vec<Dye>,
-    pub wrappings: Vec<Wrapping>,
-    pub places: Vec<Option<Place>>,
+    pub dyes: Arc<Vec<Dye>>,
+    pub wrappings: Arc<Vec<Wrapping>>,
+    pub places: Arc<Vec<Option<Place>>>,
     pub marks: Marks,
     /// Faces whose stitches have gained or lost loops, by their numbers now.
     changed: Vec<FaceId>,
@@ -43,9 +44,9 @@ impl<'a> Draft<'a> {
             positions,
             refacing: Refacing::default(),
             stitches: of_stitches,
-            dyes: stitches.dyes().to_vec(),
-            wrappings: stitches.wrappings().to_vec(),
-            places: stitches.places().to_vec(),
+            dyes: stitches.dyes.clone(),
+            wrappings: stitches.wrappings.clone(),
+            places: stitches.places.clone(),
             marks: stitches.marks().clone(),
             changed: Vec::new(),
             survivors,
@@ -103,9 +104,9 @@ impl<'a> Draft<'a> {
         let outlines = std::mem::take(&mut self.refacing.outlines);
         self.refacing.outlines = outlines.into_iter().map(|(f, outline)| (now(f), outline)).collect();
         self.stitches.remove(i);
-        self.dyes.remove(i);
-        self.wrappings.remove(i);
-        self.places.remove(i);
+        Arc::make_mut(&mut self.dyes).remove(i);
+        Arc::make_mut(&mut self.wrappings).remove(i);
+        Arc::make_mut(&mut self.places).remove(i);
         self.changed.iter_mut().for_each(|f| *f = now(*f));
         self.survivors.faces.iter_mut().for_each(|f| *f = f.map(now));
     }

@@ -6,6 +6,7 @@ use super::{EditError, Edited, End, Way};
 use crate::ids::{FaceId, VertexId};
 use crate::reface::Outline;
 use crate::stitch_mesh::StitchMesh;
+use std::sync::Arc;
 
 impl StitchMesh {
     /// Divides a stitch by a new wale edge from a corner below it to one above it. The left part keeps its number, the right
@@ -34,9 +35,9 @@ impl StitchMesh {
         *draft.stitch(face) = left;
         draft.stitches.push(right);
         draft.stitch(new);
-        draft.dyes.push(self.dyes()[face.index()]);
-        draft.wrappings.push(self.wrappings()[face.index()]);
-        draft.places.push(self.places()[face.index()]);
+        Arc::make_mut(&mut draft.dyes).push(self.dyes()[face.index()]);
+        Arc::make_mut(&mut draft.wrappings).push(self.wrappings()[face.index()]);
+        Arc::make_mut(&mut draft.places).push(self.places()[face.index()]);
         draft.finish()
     }
 
@@ -57,9 +58,9 @@ impl StitchMesh {
         let mut draft = Draft::of(self);
         *draft.outline(stays) = outline(&below, &above);
         *draft.stitch(stays) = join(self.stitch(left), self.stitch(right));
-        draft.dyes[stays.index()] = self.dyes()[left.index()];
-        draft.wrappings[stays.index()] = self.wrappings()[left.index()];
-        draft.places[stays.index()] = self.places()[left.index()];
+        Arc::make_mut(&mut draft.dyes)[stays.index()] = self.dyes()[left.index()];
+        Arc::make_mut(&mut draft.wrappings)[stays.index()] = self.wrappings()[left.index()];
+        Arc::make_mut(&mut draft.places)[stays.index()] = self.places()[left.index()];
         draft.drop_face(goes, stays);
         draft.finish()
     }
