@@ -59,7 +59,7 @@ impl Document {
         &self.project
     }
 
-    /// Does a command. What had been undone is forgotten.
+    /// Does a command. What had been undone is forgotten. A command that leaves everything as it was is no step of the history.
     ///
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
@@ -87,6 +87,9 @@ impl Document {
         (after, survivors): (Project, Option<Survivors>),
         amends: bool,
     ) {
+        if after.is_as(&self.project) {
+            return;
+        }
         let before = std::mem::replace(&mut self.project, after);
         self.undone.clear();
         let survivors = survivors.map(Arc::new);
@@ -226,6 +229,8 @@ mod tests {
         assert_eq!(purls(&document), 0);
         assert!(document.redo());
         assert_eq!(purls(&document), 2);
+        document.apply(purl(&[0])).unwrap();
+        assert!(document.undo() && document.redo(), "what changes nothing is no step");
         document.apply(purl(&[5])).unwrap();
         assert!(!document.redo(), "what was undone is forgotten after a new command");
     }

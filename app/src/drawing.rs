@@ -198,8 +198,7 @@ pub fn stitch_drawing(
     drawing
 }
 
-/// Makes a drawing the picture of a stitch mesh with these rows. The memory of what it was before is used again: after an edit of a garment
-/// that is most of the work.
+/// Puts the picture of a stitch mesh with these rows in place of the faces and lines of a drawing, whose memory is used again.
 pub fn draw_stitches(
     drawing: &mut Drawing,
     stitches: &StitchMesh,

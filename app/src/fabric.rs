@@ -155,6 +155,15 @@ impl Fabric {
         self.state.as_ref().map(|state| Arc::clone(LazyLock::force(state)))
     }
 
+    /// Whether nothing is another than in `other`, from which this was made.
+    pub(crate) fn is_as(&self, other: &Self) -> bool {
+        let states = match (&self.state, &other.state) {
+            (Some(state), Some(before)) => Arc::ptr_eq(state, before),
+            (state, before) => state.is_none() && before.is_none(),
+        };
+        states && Arc::ptr_eq(&self.laid, &other.laid) && Arc::ptr_eq(&self.stitches, &other.stitches)
+    }
+
     /// Puts the yarn somewhere. The state has to fit the net.
     pub fn put(&mut self, state: YarnState) {
         self.state = Some(known(Arc::new(state)));

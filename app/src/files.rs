@@ -28,11 +28,19 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     write().with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// Checks that a name does not say that a file is of another kind than `what`, which have an `ending` of their own.
+pub fn check_ending(path: &Path, ending: &str, what: &str) -> Result<()> {
+    match path.extension().filter(|other| !other.eq_ignore_ascii_case(ending)) {
+        Some(other) => {
+            bail!("{}: {what} are written as .{ending}, not as .{}", path.display(), other.display())
+        }
+        None => Ok(()),
+    }
+}
+
 /// Writes a picture as PNG, whole or not at all; not under the name of another kind of file.
 pub fn write_png(path: &Path, image: &image::RgbaImage) -> Result<()> {
-    if let Some(ending) = path.extension().filter(|ending| !ending.eq_ignore_ascii_case("png")) {
-        bail!("{}: pictures are written as .png, not as .{}", path.display(), ending.display());
-    }
+    check_ending(path, "png", "pictures")?;
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png)?;
     write(path, bytes.get_ref())

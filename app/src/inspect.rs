@@ -150,23 +150,29 @@ impl WovenFacts {
 }
 
 impl Inspection {
+    /// The problems, and where each of them is.
+    pub fn problem_groups(&self) -> Vec<(&str, Vec<&Problem>)> {
+        let mut groups: Vec<(&str, Vec<&Problem>)> = Vec::new();
+        for problem in &self.problems {
+            match groups.iter_mut().find(|(what, _)| *what == problem.what) {
+                Some((_, group)) => group.push(problem),
+                None => groups.push((&problem.what, vec![problem])),
+            }
+        }
+        groups
+    }
+
     /// The problems as lines, one for all places with the same problem.
     pub fn grouped_problems(&self) -> Vec<String> {
         /// Places named before the rest is counted.
         const NAMED: usize = 8;
-        let mut places: Vec<(&str, Vec<&str>)> = Vec::new();
-        for Problem { r#where, what, .. } in &self.problems {
-            match places.iter_mut().find(|(w, _)| w == what) {
-                Some((_, group)) => group.push(r#where),
-                None => places.push((what, vec![r#where])),
-            }
-        }
-        let line = |(what, group): (&str, Vec<&str>)| {
-            let named = group[..group.len().min(NAMED)].join(", ");
-            let more = group.len() - group.len().min(NAMED);
+        let line = |(what, group): (&str, Vec<&Problem>)| {
+            let named: Vec<&str> = group.iter().take(NAMED).map(|p| p.r#where.as_str()).collect();
+            let named = named.join(", ");
+            let more = group.len().saturating_sub(NAMED);
             if more > 0 { format!("{named} and {more} more: {what}") } else { format!("{named}: {what}") }
         };
-        places.into_iter().map(line).collect()
+        self.problem_groups().into_iter().map(line).collect()
     }
 }
 
@@ -207,6 +213,12 @@ impl std::fmt::Display for Inspection {
         write!(f, "{x:.0} × {y:.0} × {z:.0} mm")?;
         for problem in self.grouped_problems() {
             write!(f, "\n{problem}")?;
+        }
+        if self.loops == 0 && self.woven.is_empty() {
+            write!(
+                f,
+                "\nno stitches yet: label what is open in the window or with commands (--script), then tessellate"
+            )?;
         }
         if let Some(sim) = &self.sim {
             write!(

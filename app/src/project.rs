@@ -73,6 +73,20 @@ impl Project {
         Ok(Self::new(mesh, size))
     }
 
+    /// Whether a command that made this of `other` has left everything as it was.
+    pub(crate) fn is_as(&self, other: &Self) -> bool {
+        let fabrics = match (&self.fabric, &other.fabric) {
+            (Some(fabric), Some(before)) => fabric.is_as(before),
+            (fabric, before) => fabric.is_none() && before.is_none(),
+        };
+        fabrics
+            && Arc::ptr_eq(&self.labelled, &other.labelled)
+            && self.size == other.size
+            && self.materials == other.materials
+            && self.scene == other.scene
+            && self.counts == other.counts
+    }
+
     /// The fabric, or an error that says what to do first.
     pub fn fabric(&self) -> Result<&Fabric> {
         self.fabric.as_ref().context("the mesh has no stitches yet: label all its rows, then tessellate it")
@@ -119,8 +133,9 @@ impl Project {
     /// Writes a `.purl` file, whole or not at all.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Where it cannot be written, or has the name of another kind of file.
     pub fn save(&self, path: &Path) -> Result<()> {
+        files::check_ending(path, "purl", "projects")?;
         files::write(path, &serde_json::to_vec(&File::of(self))?)
     }
 

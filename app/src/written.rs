@@ -50,11 +50,20 @@ pub fn swatch(text: &str, width: Width, high: usize) -> Result<(Project, SwatchF
     let stitches = knit(&pattern, &worked, size)?;
     let mut project = Project::new(stitches.mesh().clone(), size);
     project.fabric = Some(Fabric::new(stitches));
+    let mut warnings: Vec<String> = worked.warnings.iter().map(ToString::to_string).collect();
+    if let Width::Repeats(wide @ 2..) = width
+        && pattern.work(Width::Repeats(1)).is_ok_and(|once| once.cast_on == worked.cast_on)
+    {
+        warnings.push(format!(
+            "nothing in the pattern repeats across, so {wide} repeats are as wide as one: write what repeats between * and \
+             'repeat from *'"
+        ));
+    }
     let facts = SwatchFacts {
         cast_on: worked.cast_on,
         rows: worked.rows.len(),
         most_stitches: worked.most_stitches(),
-        warnings: worked.warnings.iter().map(ToString::to_string).collect(),
+        warnings,
     };
     Ok((project, facts))
 }
@@ -111,6 +120,10 @@ fn region(all: &[Row], rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Resul
     })?;
     let within: HashSet<FaceId> = rows.iter().flat_map(|row| row.faces.iter().copied()).collect();
     let Some(faces) = faces else { return Ok(within) };
+    let count: usize = all.iter().map(|row| row.faces.len()).sum();
+    if let Some(face) = faces.iter().find(|f| **f as usize >= count) {
+        bail!("there is no stitch {face}: the stitches are 0–{}", count.saturating_sub(1));
+    }
     let chosen = faces.iter().copied().map(FaceId).filter(|f| within.contains(f));
     Ok(chosen.collect())
 }

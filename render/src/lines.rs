@@ -1,6 +1,7 @@
 //! Lines of constant width on the screen.
 
 use glam::Vec3;
+use std::ops::Range;
 
 use crate::damage::{Damage, Differences, Part, runs};
 use crate::drawing::{Lines, Segment};
@@ -44,8 +45,8 @@ impl LineMesh {
         let at = |i: usize| &now[places[i] as usize];
         let found = Differences::of([places.len(), segments.len()], |i, j| *at(i) == segments[j]);
         let gone = found.gone.iter().map(|i| at(*i));
-        gone.chain(found.come.iter().map(|j| &segments[*j]))
-            .for_each(|line| damage.add(line.ends, line.width));
+        let others = gone.chain(found.come.iter().map(|j| &segments[*j])).filter(|line| line.width > 0.0);
+        others.for_each(|line| damage.add(line.ends, line.width));
 
         let holes = now.len() - places.len() + found.gone.len();
         if self.lines.has_too_many_holes(holes) {
@@ -137,10 +138,17 @@ impl LinePipeline {
             pass.set_pipeline(&self.0);
             pass.set_vertex_buffer(0, buffer.slice(..));
             let lines = mesh.lines.items();
-            let reached = |line: usize| part.is_none_or(|p| p.is_reached_by(lines[line].ends.into_iter()));
-            let reached = |line: usize| lines[line].width > 0.0 && reached(line);
-            for run in runs(lines.len(), reached) {
-                pass.draw(0..4, run.start as u32..run.end as u32);
+            let mut draw = |run: Range<usize>| pass.draw(0..4, run.start as u32..run.end as u32);
+            match part {
+                // Holes are quads without an area.
+                None => draw(0..lines.len()),
+                Some(part) => {
+                    let reached = |line: usize| {
+                        let Segment { ends, width, .. } = lines[line];
+                        width > 0.0 && part.is_reached_by(ends.into_iter())
+                    };
+                    runs(lines.len(), reached).into_iter().for_each(draw);
+                }
             }
         }
     }

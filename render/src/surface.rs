@@ -7,7 +7,7 @@ use wgpu::CompareFunction::{GreaterEqual, Less};
 use crate::damage::{Damage, Differences, Part};
 use crate::drawing::{Faces, Polygon};
 use crate::light;
-use crate::mirror::Mirror;
+use crate::mirror::{Mirror, bridged};
 use crate::pipeline::{COLOR_FORMAT, Pipeline, shader};
 use crate::solids::{Solids, Triangles};
 use crate::{Gpu, RenderError};
@@ -42,8 +42,8 @@ impl Place {
         self.first_corner as usize..(self.first_corner + self.corners) as usize
     }
 
-    fn indices(self) -> Range<u32> {
-        self.first_index..self.first_index + self.indices
+    fn indices(self) -> Range<usize> {
+        self.first_index as usize..(self.first_index + self.indices) as usize
     }
 }
 
@@ -62,7 +62,8 @@ impl SurfaceMesh {
         }
     }
 
-    /// Replaces the triangles by those of polygons. Of those that are as before nothing is worked out or written again.
+    /// Replaces the triangles by those of polygons. While there are few holes nothing of those that are as before is worked out or written
+    /// again.
     pub fn set_faces(&mut self, gpu: &Gpu, faces: &Faces, damage: &mut Damage) -> Result<(), RenderError> {
         self.become_those_of(faces, damage);
         self.upload(gpu)
@@ -81,7 +82,7 @@ impl SurfaceMesh {
         } else if found != Differences::default() {
             let old = std::mem::take(&mut self.polygons);
             for place in found.gone.iter().map(|i| old[*i].indices()) {
-                self.indices.fill(place.start as usize..place.end as usize, 0);
+                self.indices.fill(place, 0);
             }
             let before = found.before(count).enumerate();
             self.polygons = before.map(|(j, i)| i.map_or_else(|| self.add(faces, j), |i| old[i])).collect();
@@ -197,7 +198,7 @@ impl SurfacePipelines {
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: Some(wgpu::Face::Back),
             target: Some(COLOR_FORMAT),
-            // Equal depths pass: what comes later is in front, as of two faces in one place.
+            // Equal depths pass: of two faces in one place the one that is drawn later is in front.
             depth: Some(GreaterEqual),
             samples,
         };
@@ -223,15 +224,11 @@ impl SurfacePipelines {
             Self::draw_with(&self.faces, pass, mesh);
             return;
         };
-        let mut drawn: Vec<Range<u32>> = Vec::new();
-        for polygon in (0..mesh.polygons.len()).filter(|p| part.is_reached_by(mesh.outline(*p))) {
-            let indices = mesh.polygons[polygon].indices();
-            match drawn.last_mut().filter(|last| last.end == indices.start) {
-                Some(last) => last.end = indices.end,
-                None => drawn.push(indices),
-            }
-        }
-        Self::draw_ranges(&self.faces, pass, mesh, drawn.into_iter());
+        let reached = (0..mesh.polygons.len()).filter(|p| part.is_reached_by(mesh.outline(*p)));
+        // In the order in which all are drawn.
+        let drawn = bridged(reached.map(|p| mesh.polygons[p].indices()).collect(), 0);
+        let drawn = drawn.into_iter().map(|range| range.start as u32..range.end as u32);
+        Self::draw_ranges(&self.faces, pass, mesh, drawn);
     }
 
     /// Draws bodies from outside.
@@ -286,7 +283,7 @@ mod tests {
     fn triangles(mesh: &SurfaceMesh) -> (Vec<([Vec3; 2], Vec4)>, usize) {
         let indices = mesh.indices.items();
         let corner = |i: u32| (mesh.shape.items()[i as usize], mesh.colors.items()[i as usize]);
-        let known = mesh.polygons.iter().flat_map(|p| p.indices()).map(|i| corner(indices[i as usize]));
+        let known = mesh.polygons.iter().flat_map(|p| p.indices()).map(|i| corner(indices[i]));
         let known: Vec<_> = known.collect();
         let all = indices.chunks(3).filter(|t| t[0] != t[1]).count();
         let more = all - known.len() / 3;

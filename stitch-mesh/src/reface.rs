@@ -174,9 +174,10 @@ impl PolygonMesh {
                 half_edges[twin as usize].twin = Some(HalfEdgeId(h));
             }
         }
-        let sound =
-            touched.iter().all(|v| !corners.has_double_at(*v) && vertex_problem(*v, &corners).is_none())
-                && outlines.values().all(|outline| degenerate(&positions, outline).is_none());
+        // In this order: fans can be followed only where edges are those of a mesh.
+        let sound = outlines.values().all(|outline| degenerate(&positions, outline).is_none())
+            && !touched.iter().any(|v| corners.has_double_at(*v))
+            && touched.iter().all(|v| vertex_problem(*v, &corners).is_none());
         let sides = Sides::numbered(positions.len(), half_edges, face_starts);
         let mesh = Self { positions, sides, corners };
         // Whoever looks at all of it finds the words for what is wrong.

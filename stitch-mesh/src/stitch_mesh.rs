@@ -216,6 +216,15 @@ impl StitchMesh {
         Arc::ptr_eq(&self.mesh, &other.mesh)
     }
 
+    /// Whether this is `other`, from which it was edited without changing any face.
+    pub fn is_as(&self, other: &Self) -> bool {
+        self.shares_mesh_of(other)
+            && self.stitches == other.stitches
+            && self.dyes == other.dyes
+            && self.wrappings == other.wrappings
+            && self.marks == other.marks
+    }
+
     /// All stitches, [face_count].
     pub fn stitches(&self) -> &[Stitch] {
         &self.stitches

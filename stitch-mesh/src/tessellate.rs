@@ -148,15 +148,19 @@ impl Builder<'_> {
 
         let reference = self.reference(wales);
         let corners: Vec<DVec3> = self.corners(wales);
+        // Of the flat outline: a side without edges is a point.
+        let [narrow, wide] = [&bottom, &top].map(|side| if side.len() > 1 { 1.0 } else { 0.0 });
         let mut below = bottom;
         for i in 1..=rows {
             let above = if i == rows {
                 top.clone()
             } else {
                 let n = at_face.at(i);
+                let up = f64::from(i) / f64::from(rows);
+                let width = narrow + (wide - narrow) * up;
                 let mut boundary = vec![left[i as usize]];
                 for j in 1..n {
-                    let point = DVec2::new(f64::from(j) / f64::from(n), f64::from(i) / f64::from(rows));
+                    let point = DVec2::new(0.5 + width * (f64::from(j) / f64::from(n) - 0.5), up);
                     let weights = mean_value_weights(&reference, point);
                     boundary.push(self.positions.len() as u32);
                     self.positions.push(corners.iter().zip(&weights).map(|(c, w)| *c * *w).sum());
@@ -313,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_triangle_gathers_at_its_tip() {
-        let positions = [DVec3::ZERO, DVec3::X, DVec3::new(0.5, 1.0, 0.0)].to_vec();
+        let positions = [DVec3::ZERO, DVec3::X, DVec3::new(0.2, 1.0, 0.0)].to_vec();
         let mut labelled = LabelledMesh::new(PolygonMesh::new(positions, &[vec![0, 1, 2]]).unwrap());
         let base = labelled.mesh().edge_between(VertexId(0), VertexId(1)).unwrap();
         labelled.fill_from_border(base).unwrap();
@@ -321,6 +325,15 @@ mod tests {
         let last = stitches.rows().pop().unwrap();
         assert_eq!(last.faces.len(), 1);
         assert_eq!(stitches.stitch(last.faces[0]).tops(), 0);
+        // Rows of even stitches that go from one of its sides to the other.
+        for row in stitches.rows() {
+            let widths = row.faces.iter().flat_map(|f| stitches.bottoms(*f));
+            let widths: Vec<f64> =
+                widths.map(|h| stitches.mesh().edge_length(stitches.mesh().edge(h))).collect();
+            assert!(widths.iter().all(|w| (w - widths[0]).abs() < 1e-9), "{widths:?}");
+        }
+        let mut fronts = stitches.mesh().faces().map(|f| stitches.mesh().face_area_vector(f).z);
+        assert!(fronts.all(|area| area > 0.0), "no stitch is folded");
     }
 
     #[test]

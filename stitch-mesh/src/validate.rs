@@ -202,7 +202,7 @@ fn vertex_problems(count: usize, corners: &Corners) -> Vec<MeshProblem> {
     (0..count as u32).into_par_iter().filter_map(|vertex| vertex_problem(vertex, corners)).collect()
 }
 
-/// Whether a vertex is isolated or has several fans. The edges are manifold already, so the faces around a vertex form chains: as many
+/// Whether a vertex is isolated or has several fans. Only to be asked where all edges are manifold: then the faces around a vertex form chains: as many
 /// as there are corners less inner edges, or a single closed fan.
 pub(crate) fn vertex_problem(vertex: u32, corners: &Corners) -> Option<MeshProblem> {
     let corners = corners.at(vertex);

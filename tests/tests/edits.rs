@@ -319,6 +319,8 @@ fn edit(which: usize, dice: &[Dice]) -> usize {
         let before = document.project().fabric().unwrap().stitches.clone();
         let Some(command) = command(&before, *throw) else { continue };
         match document.apply(command.clone()) {
+            // What changes nothing is no step.
+            Ok(()) if document.steps().len() < states.len() => {}
             Ok(()) => {
                 check(document.project());
                 states.push(document.project().clone());

@@ -106,7 +106,8 @@ fn a_click_on_a_problem_selects_and_frames_it() {
         Window::new(Command::LabelEdges { edges: vec![edge], label: None }.apply(&labelled).unwrap());
     let before = window.keep("problem-before");
     let problem = window.editor().project().labelled.problems()[0].clone();
-    window.press(&format!("face {}: {}", problem.face(), problem.what()));
+    assert!(window.says(&problem.what()), "what is wrong stands beside where it is");
+    window.press(&format!("face {}", problem.face()));
     assert_eq!(window.selected(), [problem.face().0]);
     assert!(window.keep("problem") != before, "the view goes there");
 }

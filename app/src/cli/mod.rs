@@ -54,7 +54,7 @@ enum Verb {
         #[arg(short)]
         output: PathBuf,
         /// Width of a stitch in millimetres; 10, or as the mesh that comes with the program is made for
-        #[arg(long, value_name = "MM")]
+        #[arg(long, value_name = "MM", allow_negative_numbers = true)]
         stitch_size: Option<f64>,
         /// Unit of the mesh
         #[arg(long, value_enum, default_value = "m")]
@@ -97,7 +97,7 @@ enum Verb {
         #[arg(long)]
         scene: Option<String>,
         /// Simulated time
-        #[arg(long, default_value_t = 1.0)]
+        #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
         seconds: f64,
         /// What to solve with
         #[arg(long, value_enum, default_value = "auto")]

@@ -24,6 +24,9 @@ pub(super) fn restitch(
     let old = before.knitted()?;
     let mut stitches = (*old.stitches).clone();
     change(&mut stitches)?;
+    if stitches.is_as(&old.stitches) {
+        return Ok(());
+    }
     let fabric = old.edited(stitches);
     pins::keep(&mut project.scene, old, &fabric, Some);
     project.fabric = Some(fabric);

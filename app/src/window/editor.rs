@@ -62,7 +62,7 @@ pub struct Editor {
     pub(super) selections: [Selection; 2],
     /// What the screen shows beside yarn, for picking; polygons and their sides are those of the mesh.
     pub(super) faces: Faces,
-    /// The lines on the screen.
+    /// The lines on the screen, kept for their memory: the next ones take it.
     pub(super) lines: Lines,
     /// Whether stitches have the colours of their strain.
     pub(super) strained: bool,

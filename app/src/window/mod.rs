@@ -185,6 +185,10 @@ impl Shown {
         let context = egui::Context::default();
         // A frame begins with the colour of the panels, which is cheaper than to paint them.
         context.all_styles_mut(|style| style.visuals.panel_fill = egui::Color32::TRANSPARENT);
+        // Pure red on dark grey is hard to read.
+        context.style_mut_of(egui::Theme::Dark, |style| {
+            style.visuals.error_fg_color = egui::Color32::from_rgb(255, 128, 112);
+        });
         let input = egui_winit::State::new(
             context,
             egui::ViewportId::ROOT,

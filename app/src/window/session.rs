@@ -171,13 +171,14 @@ impl Session {
                 lock(&slot).0 = Arc::clone(&view);
                 *lock(&work_slot) = None;
                 wake();
-                // Drawing the stitches and laying their yarn both take all processors: the one that is waited for goes first.
+                // Drawing the stitches and laying their yarn both take all processors: what is waited for goes first.
                 let until = Instant::now() + PATIENCE;
-                while seen.load(Ordering::Acquire) < view.revision && Instant::now() < until {
+                let is_last = || count.load(Ordering::Acquire) == 1;
+                while is_last() && seen.load(Ordering::Acquire) < view.revision && Instant::now() < until {
                     std::thread::park_timeout(until.saturating_duration_since(Instant::now()));
                 }
                 // Of a state that is about to change nobody needs to know more.
-                if count.load(Ordering::Acquire) == 1 {
+                if is_last() {
                     if let Some(fabric) = &view.project.fabric {
                         fabric.state();
                         wake();
@@ -192,7 +193,7 @@ impl Session {
         Ok(Self { requests, latest, waiting, work, shown, thread })
     }
 
-    /// Says which revision the window has drawn.
+    /// Says which revision the window has given to the graphics adapter to draw.
     pub fn has_shown(&self, revision: u64) {
         if self.shown.swap(revision, Ordering::Release) != revision {
             self.thread.unpark();
@@ -204,16 +205,19 @@ impl Session {
         self.waiting.fetch_add(1, Ordering::Release);
         // The thread ends only when this sender is dropped.
         let _ = self.requests.send((request, yarn));
+        self.thread.unpark();
     }
 
     /// Shows the system's file dialog, beside the window, and opens what is chosen. Where there is no dialog it is as if nothing were.
     pub fn ask_for_file(&self) {
         let (requests, waiting) = (self.requests.clone(), Arc::clone(&self.waiting));
+        let thread = self.thread.clone();
         let ask = move || {
             let dialog = rfd::FileDialog::new().add_filter("Projects and meshes", &["purl", "obj"]);
             let chosen = dialog.pick_file().map_or(Request::Say(NOTHING_CHOSEN), Request::Open);
             waiting.fetch_add(1, Ordering::Release);
             let _ = requests.send((chosen, None));
+            thread.unpark();
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(ask) {
             tracing::warn!("no file dialog: {error}");

@@ -2,9 +2,11 @@ use super::*;
 use crate::cable::Cable;
 use crate::dye::Dye;
 use crate::edge_counts::StitchSize;
+use crate::mesh::PolygonMesh;
 use crate::pieces::{rectangle, tube};
 use crate::stitch::Stitch;
 use crate::wrapping::Wrapping;
+use glam::DVec3;
 
 /// Stitches 0–4 below 5–9 below 10–14; vertices 0–5, 6–11, 12–17, 18–23.
 fn piece() -> StitchMesh {
@@ -144,4 +146,22 @@ fn a_stitch_worked_into_ten_loops_is_refused() {
     let last = VertexId::new(fabric.mesh().vertex_count() - 1);
     assert_eq!(fabric.split_course([last, VertexId(9)]).unwrap_err(), EditError::TooManyBottoms(FaceId(7)));
     assert_eq!(fabric.stitch(FaceId(7)), &Stitch::default_for(9, 1, true));
+}
+
+/// A tube of three loops above a tab: where two of its vertices become one, an edge would have three stitches.
+#[test]
+fn a_tube_that_would_close_is_refused() {
+    let around = |i: u32, y: f64| {
+        let angle = std::f64::consts::TAU * f64::from(i) / 3.0;
+        DVec3::new(angle.sin(), y, angle.cos())
+    };
+    let tab = [0, 2].map(|i| around(i, -1.0));
+    let positions = (0..3).map(|i| around(i, 0.0)).chain(tab).chain((0..3).map(|i| around(i, 1.0)));
+    let faces = [vec![3, 4, 2, 1, 0], vec![0, 1, 2, 7, 6, 5], vec![2, 0, 5, 7]];
+    let stitches = [(1, 2), (2, 2), (1, 1)].map(|(bottoms, tops)| Stitch::default_for(bottoms, tops, true));
+    let mesh = PolygonMesh::new(positions.collect(), &faces).unwrap();
+    let tube = StitchMesh::new(mesh, stitches.to_vec()).unwrap();
+    let refused = tube.collapse_course(v(0, 1)).unwrap_err();
+    assert!(refused.to_string().contains("3 faces share it"), "{refused}");
+    assert!(tube.split_course(v(0, 1)).is_ok());
 }

@@ -7,8 +7,9 @@ use crate::window::selection::{Change, Picked};
 use egui::{RichText, Ui};
 use stitch_mesh::ids::{FaceId, VertexId};
 
-/// Problems shown; the rest waits until these are mended.
-const MOST: usize = 40;
+/// Different problems shown, and places of each; the rest waits until these are mended.
+const MOST: usize = 20;
+const NAMED: usize = 12;
 
 /// Shows them.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
@@ -22,17 +23,28 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         return;
     }
     egui::ScrollArea::vertical().id_salt("problems").max_height(200.0).show(ui, |ui| {
-        for problem in problems.iter().take(MOST) {
-            let text = RichText::new(format!("{}: {}", problem.r#where, problem.what));
-            let button = egui::Button::new(text.color(ui.visuals().warn_fg_color)).wrap().frame(false);
-            if ui.add_enabled(current, button).on_hover_text("Select it and look at it").clicked() {
-                show_where(editor, problem);
-            }
+        let groups = survey.facts.problem_groups();
+        let more = groups.len().saturating_sub(MOST);
+        for (what, places) in groups.into_iter().take(MOST) {
+            ui.horizontal_wrapped(|ui| {
+                for problem in &places[..places.len().min(NAMED)] {
+                    let text = RichText::new(&problem.r#where).color(ui.visuals().warn_fg_color);
+                    let link = egui::Button::new(text).small();
+                    if ui.add_enabled(current, link).on_hover_text("Select it and look at it").clicked() {
+                        show_where(editor, problem);
+                    }
+                }
+                if places.len() > NAMED {
+                    ui.label(RichText::new(format!("and {} more", places.len() - NAMED)).weak());
+                }
+            });
+            ui.add(egui::Label::new(what).wrap());
+            ui.add_space(4.0);
+        }
+        if more > 0 {
+            ui.label(RichText::new(format!("and {more} other problems")).weak());
         }
     });
-    if problems.len() > MOST {
-        ui.label(RichText::new(format!("and {} more", problems.len() - MOST)).weak());
-    }
 }
 
 fn show_where(editor: &mut Editor, problem: &Problem) {

@@ -28,26 +28,32 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             });
         });
         ui.horizontal(|ui| {
-            if let Some(work) = editor.session.work().filter(|w| w.since.elapsed() > SHORT) {
-                ui.spinner();
-                ui.label(format!("{} …  {:.0} s", work.name, work.since.elapsed().as_secs_f64()));
-                if ui.button("Cancel").on_hover_text("Leave the document as it was before").clicked() {
-                    editor.session.cancel();
-                }
-            }
-            let sim_error = editor.yarn().and_then(|s| s.error.clone());
-            if let Some(error) = editor.error.as_ref().or(sim_error.as_ref()) {
-                ui.colored_label(ui.visuals().error_fg_color, error);
-            } else if let Ok(message) = &editor.view.message {
-                ui.label(message);
-            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if let Some(s) = editor.yarn() {
                     ui.label(format!("{:.2} s simulated, {:.0} ms a step", s.time_s, s.ms_per_step));
                 }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| going_on(editor, ui));
             });
         });
     });
+}
+
+/// What is going on, or what the last request came to. Where there is no room for all of it, the pointer shows the rest.
+fn going_on(editor: &Editor, ui: &mut Ui) {
+    if let Some(work) = editor.session.work().filter(|w| w.since.elapsed() > SHORT) {
+        ui.spinner();
+        ui.label(format!("{} …  {:.0} s", work.name, work.since.elapsed().as_secs_f64()));
+        if ui.button("Cancel").on_hover_text("Leave the document as it was before").clicked() {
+            editor.session.cancel();
+        }
+    }
+    let sim_error = editor.yarn().and_then(|s| s.error.as_ref());
+    let text = match (editor.error.as_ref().or(sim_error), &editor.view.message) {
+        (Some(error), _) => RichText::new(error).color(ui.visuals().error_fg_color),
+        (None, Ok(message)) => RichText::new(message),
+        (None, Err(_)) => return,
+    };
+    ui.add(egui::Label::new(text).truncate());
 }
 
 /// What is under the pointer: "stitch 214, k2tog (d12k), row 12, 7th of 48".
