@@ -17,6 +17,8 @@ pub struct Document {
     project: Project,
     done: Vec<Step>,
     undone: Vec<Step>,
+    /// Whether the last step done is the one that was begun last: what is to amend a step that came to nothing begins one.
+    is_open: bool,
 }
 
 /// Commands that are done and undone together, never none, and the project on their other side: before them when done, after
@@ -51,7 +53,7 @@ impl Step {
 impl Document {
     /// A document without history.
     pub fn new(project: Project) -> Self {
-        Self { project, done: Vec::new(), undone: Vec::new() }
+        Self { project, done: Vec::new(), undone: Vec::new(), is_open: false }
     }
 
     /// The project now.
@@ -70,7 +72,7 @@ impl Document {
     }
 
     /// Does a command as part of the last step, as a brush does that has reached one more face: there is still one step to
-    /// undo.
+    /// undo. Where the command that was to begin it has changed nothing, this one begins it.
     ///
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
@@ -87,11 +89,14 @@ impl Document {
         (after, survivors): (Project, Option<Survivors>),
         amends: bool,
     ) {
+        let amends = amends && self.is_open;
         if after.is_as(&self.project) {
+            self.is_open = amends;
             return;
         }
         let before = std::mem::replace(&mut self.project, after);
         self.undone.clear();
+        self.is_open = true;
         let survivors = survivors.map(Arc::new);
         let Some(step) = self.done.last_mut().filter(|_| amends) else {
             self.done.push(Step::new(vec![command], before, survivors));
@@ -109,6 +114,7 @@ impl Document {
 
     /// Takes back the last command. False if there is none.
     pub fn undo(&mut self) -> bool {
+        self.is_open = false;
         let Some(step) = self.done.pop() else { return false };
         let was = step.survivors.as_ref().map(|s| s.faces.clone());
         let step = self.swap(step, was.as_deref());
@@ -118,6 +124,7 @@ impl Document {
 
     /// Does again what was taken back last. False if there is none.
     pub fn redo(&mut self) -> bool {
+        self.is_open = false;
         let Some(step) = self.undone.pop() else { return false };
         let was = step.survivors.as_ref().map(|s| s.faces_before());
         let step = self.swap(step, was.as_deref());
@@ -248,6 +255,20 @@ mod tests {
         );
         assert!(document.undo());
         assert_eq!(purls(&document), 0);
+    }
+
+    #[test]
+    fn a_stroke_that_begins_where_nothing_changes_is_a_step_of_its_own() {
+        let mut document = document();
+        let purl = |face| Command::SetStitch { faces: vec![face], stitch: Stitch::purl() };
+        document.apply(purl(3)).unwrap();
+        document.apply(purl(3)).unwrap();
+        document.amend(purl(4)).unwrap();
+        document.amend(purl(5)).unwrap();
+        assert_eq!(document.steps().collect::<Vec<_>>(), ["Set 1 stitch to p", "Set 2 stitches to p"]);
+        assert!(document.undo());
+        document.amend(purl(6)).unwrap();
+        assert_eq!(document.steps().len(), 2, "what was undone to is no step to go on with");
     }
 
     #[test]

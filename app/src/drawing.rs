@@ -11,6 +11,7 @@ use sim_core::curves;
 use smallvec::SmallVec;
 use std::collections::HashMap;
 use stitch_mesh::cable::Cable;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::{EdgeId, FaceId, VertexId};
 use stitch_mesh::label::{EdgeLabel, LabelledMesh, Row};
 use stitch_mesh::mesh::PolygonMesh;
@@ -165,22 +166,24 @@ fn label_drawing(labelled: &LabelledMesh, shown: Shown<'_>) -> Drawing {
     Drawing { faces: faces(mesh, shown, color), lines: Lines { segments }, ..Drawing::default() }
 }
 
-/// Colours of the faces of a stitch mesh with these rows, [face_count]: by kind, odd rows darker.
+/// Colours of the faces of a stitch mesh with these rows, [face_count]: by kind or yarn, odd rows darker.
 pub fn stitch_colors(stitches: &StitchMesh, rows: &[Row], colors: StitchColors) -> Vec<[f32; 3]> {
     let mut is_odd = vec![false; stitches.mesh().face_count()];
     for row in rows.iter().skip(1).step_by(2) {
         row.faces.iter().for_each(|f| is_odd[f.index()] = true);
     }
-    // A fabric has few kinds of stitches, and mostly several of one beside each other, so their colours are looked up once each.
-    let mut known: HashMap<&Stitch, [[f32; 3]; 2]> = HashMap::new();
-    let mut last: Option<(&Stitch, [[f32; 3]; 2])> = None;
-    let both = |stitch: &Stitch| [0, 1].map(|row| colors.of(&stitch.to_string(), row));
-    let colors = stitches.stitches().iter().zip(is_odd).map(|(stitch, odd)| {
+    // A fabric has few kinds of stitches and yarns, and mostly several of one beside each other, so their colours are looked up once each.
+    type Kind<'a> = (&'a Stitch, Dye);
+    let mut known: HashMap<Kind<'_>, [[f32; 3]; 2]> = HashMap::new();
+    let mut last: Option<(Kind<'_>, [[f32; 3]; 2])> = None;
+    let both = |(stitch, dye): &Kind<'_>| [0, 1].map(|row| colors.of(&stitch.to_string(), dye.linear(), row));
+    let kinds = stitches.stitches().iter().zip(stitches.dyes().iter().copied());
+    let colors = kinds.zip(is_odd).map(|(kind, odd)| {
         let colors = match last {
-            Some((same, colors)) if same == stitch => colors,
-            _ => *known.entry(stitch).or_insert_with(|| both(stitch)),
+            Some((same, colors)) if same == kind => colors,
+            _ => *known.entry(kind).or_insert_with_key(both),
         };
-        last = Some((stitch, colors));
+        last = Some((kind, colors));
         colors[usize::from(odd)]
     });
     colors.collect()

@@ -232,7 +232,7 @@ impl std::fmt::Display for Inspection {
                 sim.min_yarn_distance_over_diameter,
                 sim.max_penetration_mm
             )?;
-            for HoldFact { what, force_n } in &sim.holds {
+            for HoldFact { what, force_n } in sim.holds.iter().filter(|hold| hold.is_felt()) {
                 let [x, y, z] = (1e3 * *force_n).to_array();
                 write!(
                     f,

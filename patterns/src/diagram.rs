@@ -4,6 +4,8 @@
 //! yarn-overs beside it is shown as its parts. Rows with fewer squares than the widest are filled up with "no stitch"
 //! squares, so that what is knitted into a loop stands above it; see `grid`.
 //!
+//! Squares of dyed yarn have its colour.
+//!
 //! What a symbol looks like is in [`glyph`]; a drawing is a list of marks ([`mark`]), which become SVG, pixels, or the
 //! shapes of a window.
 
@@ -21,6 +23,7 @@ pub use repeat::Repeat;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use stitch_mesh::cable::Cable;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::{EdgeId, FaceId};
 use stitch_mesh::label::Row;
 use stitch_mesh::stitch::{Make, Op, Stitch};
@@ -46,6 +49,8 @@ pub struct Cell {
     pub columns: Range<usize>,
     /// The face it is knitted in.
     pub face: Option<FaceId>,
+    /// The colour of its yarn.
+    pub dye: Dye,
 }
 
 /// One row of a chart.
@@ -144,6 +149,7 @@ impl Course {
 struct Part {
     stitch: Stitch,
     face: FaceId,
+    dye: Dye,
     below: Vec<EdgeId>,
     above: Vec<EdgeId>,
 }
@@ -185,8 +191,10 @@ fn parts(stitches: &StitchMesh, face: FaceId) -> impl Iterator<Item = Part> {
     let mesh = stitches.mesh();
     let below: Vec<EdgeId> = stitches.bottoms(face).map(|h| mesh.edge(h)).collect();
     let above: Vec<EdgeId> = stitches.tops(face).map(|h| mesh.edge(h)).collect();
+    let dye = stitches.dyes()[face.index()];
     split(stitches.stitch(face)).into_iter().map(move |(stitch, tops)| Part {
         face,
+        dye,
         below: below[..stitch.bottoms()].to_vec(),
         above: above[tops].to_vec(),
         stitch,
@@ -274,13 +282,14 @@ fn places(rows: &[Vec<Part>], columns: usize) -> Vec<Vec<usize>> {
 
 /// The cells of a row, with "no stitch" where nothing stands.
 fn cells(parts: &[Part], first: &[usize], columns: usize) -> Vec<Cell> {
-    let nothing = |c: usize| Cell { stitch: None, columns: c..c + 1, face: None };
+    let nothing = |c: usize| Cell { stitch: None, columns: c..c + 1, face: None, dye: Dye::UNDYED };
     let mut cells = Vec::new();
     let mut end = 0;
     for (part, first) in parts.iter().zip(first) {
         cells.extend((end..*first).map(nothing));
         end = first + part.width();
-        cells.push(Cell { stitch: Some(part.stitch.clone()), columns: *first..end, face: Some(part.face) });
+        let Part { stitch, face, dye, .. } = part;
+        cells.push(Cell { stitch: Some(stitch.clone()), columns: *first..end, face: Some(*face), dye: *dye });
     }
     cells.extend((end..columns).map(nothing));
     cells

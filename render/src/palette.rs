@@ -44,22 +44,26 @@ pub enum StitchColors {
     /// `d21k`. Their key is a picture without names, so the hues are ours; what they are for is to tell the two slants of a
     /// decrease and the two sides of a yarn-over apart, which the colours above do not. Other kinds are as above.
     Paper,
+    /// No kinds: every stitch has the colour of its yarn.
+    Yarn,
 }
 
 impl StitchColors {
-    /// Both, each with a name and what it is for.
-    pub const ALL: [(Self, &str, &str); 2] = [
+    /// All, each with a name and what it is for.
+    pub const ALL: [(Self, &str, &str); 3] = [
         (Self::Distinct, "Distinct", "Kinds of stitches are told apart by every kind of colour vision"),
         (
             Self::Paper,
             "As in the paper",
             "A strong hue for each of the seven types of Stitch Meshes, slants apart",
         ),
+        (Self::Yarn, "Yarn", "Every stitch has the colour of its yarn"),
     ];
 
-    /// Colour of a stitch by its symbol (`k`, `p`, `y`, `kp`, `d12k`, …) in a row. Odd rows are darker.
-    pub fn of(self, symbol: &str, row: usize) -> [f32; 3] {
+    /// Colour of a stitch by its symbol (`k`, `p`, `y`, `kp`, `d12k`, …) and that of its yarn, in a row. Odd rows are darker.
+    pub fn of(self, symbol: &str, yarn: [f32; 3], row: usize) -> [f32; 3] {
         let color = match (self, symbol) {
+            (Self::Yarn, _) => return yarn.map(|channel| channel * shade(row)),
             (Self::Distinct, _) => distinct(symbol),
             (_, "k") => 0xf2dc5c,
             (_, "p") => 0x4a86d8,
@@ -70,9 +74,12 @@ impl StitchColors {
             (_, "d21k") => 0x2fb9ae,
             (Self::Paper, other) => distinct(other),
         };
-        let shade = if row % 2 == 1 { ODD_ROW } else { 1.0 };
-        hex(color).map(|channel| channel * shade)
+        hex(color).map(|channel| channel * shade(row))
     }
+}
+
+fn shade(row: usize) -> f32 {
+    if row % 2 == 1 { ODD_ROW } else { 1.0 }
 }
 
 fn distinct(symbol: &str) -> u32 {
@@ -159,7 +166,7 @@ mod tests {
 
     #[test]
     fn kinds_of_stitches_differ() {
-        let stitch = |symbol, row| StitchColors::Distinct.of(symbol, row);
+        let stitch = |symbol, row| StitchColors::Distinct.of(symbol, YARN, row);
         let kinds = ["k", "p", "y", "kp", "py", "kyk", "pyp", "d12k", "d21p", "d123k", "d312p"];
         for (i, a) in kinds.iter().enumerate() {
             for b in &kinds[..i] {
@@ -172,12 +179,12 @@ mod tests {
 
     #[test]
     fn the_types_of_the_paper_differ_more() {
-        let stitch = |symbol, row| StitchColors::Paper.of(symbol, row);
+        let stitch = |symbol, row| StitchColors::Paper.of(symbol, YARN, row);
         let types = ["k", "p", "ky", "yk", "yky", "d12k", "d21k"];
         for (i, a) in types.iter().enumerate() {
             assert!(types[..i].iter().all(|b| distance(stitch(a, 0), stitch(b, 0)) > 0.25), "{a}");
             assert!(stitch(a, 1)[0] < stitch(a, 0)[0]);
         }
-        assert_eq!(stitch("kpk", 0), StitchColors::Distinct.of("kpk", 0));
+        assert_eq!(stitch("kpk", 0), StitchColors::Distinct.of("kpk", YARN, 0));
     }
 }

@@ -258,7 +258,7 @@ fn stitch_chart() -> Drawing {
         let symbol = symbols[((column + row / 4) % 10) as usize];
         faces.polygons.push(Polygon {
             vertices: corners.as_slice().into(),
-            color: palette::StitchColors::Distinct.of(symbol, row as usize),
+            color: palette::StitchColors::Distinct.of(symbol, palette::YARN, row as usize),
         });
         let edge = |i: usize| [corners[i], corners[(i + 1) % 4]].map(|v| faces.positions[v as usize]);
         lines.segments.push(Segment { ends: edge(0), color: palette::COURSE_EDGE, width: 1.5 });

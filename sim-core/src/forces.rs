@@ -29,6 +29,13 @@ pub struct HoldFact {
     pub force_n: DVec3,
 }
 
+impl HoldFact {
+    /// Whether it is worth telling: a hundredth of a millinewton is what a millimetre of yarn weighs.
+    pub fn is_felt(&self) -> bool {
+        self.force_n.length() >= 5e-6
+    }
+}
+
 impl Forces {
     /// Those of pins and clamps, `time_s` after the scene began [s], on nodes at `position` [node_count] [m].
     pub(crate) fn of_springs(scene: &Scene, position: &[DVec3], time_s: f64) -> Self {

@@ -3,10 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, which clippy cannot see")]
 
 use app::drawing::Stage;
+use app::project::Project;
 use app::window::editor::Editor;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use stitch_mesh::ids::FaceId;
+use stitch_mesh::stitch::Stitch;
 use tests::window::{Window, fabric};
 
 /// Begins with a mesh that comes with the program.
@@ -90,6 +93,72 @@ fn work_that_has_not_been_saved_is_asked_about() {
     assert!(!window.editor().is_closed());
     window.press("Go on without");
     assert!(window.editor().is_closed());
+}
+
+/// A small fabric in a file.
+fn file(folder: &Path, name: &str) -> PathBuf {
+    let path = folder.join(name);
+    tests::window::knitted().save(&path).unwrap();
+    path
+}
+
+#[test]
+fn saving_before_another_file_is_opened_leaves_that_file_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let [mine, other] = ["mine.purl", "other.purl"].map(|name| file(folder.path(), name));
+    let before = std::fs::read(&other).unwrap();
+    let (mut window, rows) = fabric();
+    open(&mut window, &mine);
+    window.rest();
+    window.press("Stitches");
+    window.press("Front");
+    window.click_stitch(rows[0][0], None, Modifiers::NONE);
+    window.key(Modifiers::NONE, Key::P);
+    open(&mut window, &other);
+    assert!(window.says("Save what was done to mine.purl first?") && window.says("mine.purl."));
+    // The keys belong to the question.
+    window.key(Modifiers::NONE, Key::T);
+    assert_eq!(window.stitches(&rows[0][..1]), ["p"]);
+    window.key(Modifiers::NONE, Key::Escape);
+    assert!(!window.says("Save what was done"), "Escape stays");
+    open(&mut window, &other);
+    window.press("Save and go on");
+    window.wait("the other file", |e| {
+        e.project().fabric().unwrap().stitches.stitch(FaceId(0)) == &Stitch::knit()
+    });
+    assert_eq!(std::fs::read(&other).unwrap(), before, "opened, not written");
+    let saved = Project::open(&mine).unwrap();
+    assert_eq!(saved.fabric().unwrap().stitches.stitch(FaceId(rows[0][0])), &Stitch::purl());
+}
+
+#[test]
+fn another_file_is_not_replaced_without_asking() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(folder.path(), "kept.purl");
+    let before = std::fs::read(&path).unwrap();
+    let (mut window, rows) = fabric();
+    window.press("Stitches");
+    window.press("Front");
+    window.click_stitch(rows[0][0], None, Modifiers::NONE);
+    window.key(Modifiers::NONE, Key::P);
+    window.harness.get_by_label("Path").focus();
+    window.harness.step();
+    window.key(Modifiers::COMMAND, Key::A);
+    window.harness.get_by_label("Path").type_text(path.to_str().unwrap());
+    window.key(Modifiers::NONE, Key::Escape);
+    window.press("Save");
+    window.keep("replacing");
+    window.press("Keep it");
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+    window.press("Save");
+    window.press("Replace");
+    let after = std::fs::read(&path).unwrap();
+    assert!(after != before);
+    // From now on it is this document's.
+    window.key(Modifiers::NONE, Key::T);
+    window.key(Modifiers::COMMAND, Key::S);
+    assert!(!window.says("Replace"));
+    assert!(std::fs::read(&path).unwrap() != after);
 }
 
 #[test]

@@ -256,3 +256,26 @@ fn single_stitches_are_wrapped_otherwise() {
     let right = std::f64::consts::FRAC_PI_2;
     assert!(wrapping(&window, rows[2][3]).angle.is_some_and(|a| (a - right).abs() < 1e-12));
 }
+
+/// Between two frames the pointer may pass over several stitches.
+#[test]
+fn a_quick_stroke_of_the_brush_leaves_no_gaps() {
+    let (mut window, rows) = fabric();
+    window.key(NONE, Key::D);
+    let [from, to] = [1, 5].map(|i| window.at_stitch(rows[2][i], None));
+    window.harness.hover_at(from);
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: NONE,
+    };
+    window.harness.event(button(from, true));
+    window.harness.step();
+    window.harness.hover_at(to);
+    window.harness.event(button(to, false));
+    window.rest();
+    assert_eq!(window.stitches(&rows[2][..7]).concat(), "kpppppk");
+    window.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.purls(), 0, "one step");
+}

@@ -3,7 +3,7 @@
 
 use super::actions;
 use super::editor::Editor;
-use super::pointer::{Tool, modifiers_of_click, paint_over};
+use super::pointer::{Tool, modifiers_of_click, paint_over, stroke};
 use super::selection::{Change, Mode, Picked};
 use super::session::Request;
 use crate::drawing::Stage;
@@ -12,7 +12,6 @@ use glam::Vec3;
 use patterns::diagram::mark::{Mark, Paint};
 use patterns::diagram::{Cell, Course, Diagram, sheet};
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use std::sync::Arc;
 use stitch_mesh::ids::{FaceId, HalfEdgeId};
 use stitch_mesh::stitch_mesh::StitchMesh;
@@ -61,12 +60,9 @@ impl Editor {
 
     /// Saves the chart beside the project.
     pub(super) fn save_chart(&mut self, extension: &str) {
-        let path = PathBuf::from(self.panel.path.trim());
-        if path.as_os_str().is_empty() {
-            self.error = Some("give the project a name first, in the field beside Save".into());
-            return;
+        if let Some(path) = self.named(extension) {
+            self.write(Request::SaveChart(path, self.courses()));
         }
-        self.request(Request::SaveChart(path.with_extension(extension), self.courses()));
     }
 
     fn courses(&self) -> Vec<Course> {
@@ -223,25 +219,40 @@ fn squares(editor: &mut Editor, ui: &mut Ui) {
                     .filter(|(row, cell)| place(&drawn.diagram, rect.min, *row, cell).intersects(drawn_box));
                 inside.filter_map(|(_, cell)| cell.face).collect()
             }
+            None if editor.tool == Tool::Paint => {
+                let way = pointer.map(|at| stroke(editor, ui, at)).unwrap_or_default();
+                let squares = way.iter().map(|p| (*p - rect.min) / SQUARE);
+                let cells = squares.filter_map(|p| drawn.diagram.cell_at([p.x, p.y]));
+                cells.filter_map(|cell| cell.face).collect()
+            }
             None => chart.over.into_iter().collect(),
         };
         if response.drag_stopped() {
             chart.box_from = None;
         }
-        use_mouse(editor, ui, &response, over, drawn_box.is_some());
+        use_mouse(editor, ui, &response, pointer, over, drawn_box.is_some());
     }
     editor.chart = Some(chart);
 }
 
 /// A click selects or paints what it hits, a box selects what it touches once it is drawn.
-fn use_mouse(editor: &mut Editor, ui: &Ui, response: &Response, over: Vec<FaceId>, in_box: bool) {
+fn use_mouse(
+    editor: &mut Editor,
+    ui: &Ui,
+    response: &Response,
+    at: Option<Pos2>,
+    over: Vec<FaceId>,
+    in_box: bool,
+) {
     let held = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
     let faces: Vec<FaceId> = match editor.selection().mode {
         Mode::Row => over.into_iter().flat_map(|face| editor.surface().row(face)).collect(),
         _ => over,
     };
     if editor.tool == Tool::Paint {
-        paint_over(editor, faces, held, response.clicked());
+        if let Some(at) = at {
+            paint_over(editor, faces, at, held, response.clicked());
+        }
     } else if response.clicked() || in_box && response.drag_stopped() {
         editor.select(Picked::Faces(faces), Change::of(ui.input(modifiers_of_click)));
     }

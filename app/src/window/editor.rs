@@ -23,7 +23,7 @@ use glam::{DVec3, Vec3};
 use render::palette::StitchColors;
 use render::{Bounds, Camera, Faces, Lines, NamedView};
 use sim_core::{Materials, Pin, Scene, See, SharedGpu, SimCommand, SimThread, Snapshot, SolverChoice};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 use stitch_mesh::ids::{FaceId, HalfEdgeId};
@@ -94,6 +94,10 @@ pub struct Editor {
     /// What is to be done once it is clear what happens to work that has not been saved.
     pub(super) leaving: Option<Leaving>,
     pub(super) is_closed: bool,
+    /// What would write over a file, once it is clear that it may.
+    pub(super) replacing: Option<Request>,
+    /// Files that were written from here.
+    pub(super) written: HashSet<PathBuf>,
 }
 
 impl Editor {
@@ -162,6 +166,8 @@ impl Editor {
             error: None,
             leaving: None,
             is_closed: false,
+            replacing: None,
+            written: HashSet::new(),
         })
     }
 
@@ -182,6 +188,7 @@ impl Editor {
         self.session.has_shown(self.view.revision);
         super::search::show(self, ui.ctx());
         panels::leaving::show(self, ui.ctx());
+        panels::replacing::show(self, ui.ctx());
         if self.session.is_busy() {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
         }
@@ -293,9 +300,11 @@ impl Editor {
     fn take_news(&mut self) {
         let view = self.session.latest();
         if view.revision != self.view.revision {
-            if view.path != self.view.path {
+            if view.opened != self.view.opened {
                 let kept = std::mem::replace(&mut self.panel, panels::State::of(&view));
                 (self.panel.aspect, self.panel.lab) = (kept.aspect, kept.lab);
+            } else if view.path != self.view.path {
+                self.panel.path = panels::path_text(&view);
             }
             self.error = view.message.clone().err();
             self.forget_parts(&view.project);
@@ -400,27 +409,25 @@ impl Editor {
 
     /// Saves under the name in the path field.
     pub(super) fn save(&mut self) {
-        let mut path = PathBuf::from(self.panel.path.trim());
-        if path.as_os_str().is_empty() {
-            self.error = Some("give the project a name first, in the field beside Save".into());
-            return;
+        if let Some(path) = self.named("purl") {
+            self.write(Request::Save(path));
         }
-        path.set_extension("purl");
-        self.request(Request::Save(path));
     }
 
     /// Saves the history beside the project.
     pub(super) fn save_script(&mut self) {
-        let path = PathBuf::from(self.panel.path.trim()).with_extension("jsonl");
-        self.request(Request::SaveScript(path));
+        if let Some(path) = self.named("jsonl") {
+            self.write(Request::SaveScript(path));
+        }
     }
 
     /// Saves knitting instructions beside the project: for what is selected, or for everything.
     pub(super) fn save_instructions(&mut self) {
-        let path = PathBuf::from(self.panel.path.trim()).with_extension("ks");
         let selected = &self.selection().faces;
         let faces = (!selected.is_empty()).then(|| selected.iter().map(|f| f.0).collect());
-        self.request(Request::SaveInstructions(path, faces));
+        if let Some(path) = self.named("ks") {
+            self.write(Request::SaveInstructions(path, faces));
+        }
     }
 
     /// Cuts the mesh into stitches: of the width in the panel where it was changed, or as edges are counted now.

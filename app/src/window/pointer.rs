@@ -10,6 +10,7 @@ use egui::{Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, U
 use glam::Vec2;
 use render::{Ray, Visible, pick};
 use sim_core::Pin;
+use std::collections::HashSet;
 use stitch_mesh::ids::{EdgeId, FaceId, HalfEdgeId};
 
 /// Stiffness with which the hand holds a loop, over the stiffness of its yarn in stretch: firm, and far from tearing.
@@ -36,10 +37,20 @@ pub enum Gesture {
     Box(Pos2),
     /// A circle, over what showed when the button went down; whether it takes away.
     Brush(Visible, Change),
-    /// Painting; the faces reached so far.
-    Paint(Vec<FaceId>),
+    /// Painting.
+    Paint(PaintStroke),
     /// A loop in the hand.
     Grab(Pin),
+}
+
+/// A stroke of the painting brush.
+pub struct PaintStroke {
+    /// Faces reached so far.
+    reached: HashSet<FaceId>,
+    /// Where the pointer was last.
+    last: Pos2,
+    /// Whether something was painted.
+    has_painted: bool,
 }
 
 /// Does what the left button asks for; draws what it drags.
@@ -75,7 +86,7 @@ fn work(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
     match editor.tool {
         Tool::Select => select(editor, ui, response, rect, modifiers),
         Tool::Brush => brush(editor, ui, at, rect, held || response.clicked(), modifiers),
-        Tool::Paint => paint(editor, response, held, modifiers),
+        Tool::Paint => paint(editor, ui, response, rect, at, modifiers),
         Tool::Grab if held => grab(editor),
         Tool::Grab => {}
         Tool::Scissors if response.clicked() => editor.cut_at(ray),
@@ -187,36 +198,71 @@ fn covered(editor: &Editor, visible: &Visible, inside: impl Fn(Vec2) -> bool) ->
     }
 }
 
-fn paint(editor: &mut Editor, response: &Response, held: bool, modifiers: Modifiers) {
-    let Some((half, _)) = editor.under.filter(|_| held || response.clicked()) else { return };
+fn paint(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect, at: Pos2, modifiers: Modifiers) {
+    let held = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
+    if !held && !response.clicked() {
+        return;
+    }
     let mode = if editor.selection().mode == Mode::Row { Mode::Row } else { Mode::Face };
-    let Picked::Faces(faces) = Picked::at(editor.surface(), half, mode, modifiers.alt) else { return };
-    paint_over(editor, faces, held, response.clicked());
+    let reached = |half, looped| match Picked::at(editor.surface(), half, mode, looped) {
+        Picked::Faces(faces) => faces,
+        Picked::Edges(_) => Vec::new(),
+    };
+    let way = stroke(editor, ui, at);
+    let mut faces = Vec::new();
+    if way.len() > 1 {
+        let visible = seen(editor, rect);
+        let passed = way.iter().filter_map(|p| visible.at(Vec2::new(p.x - rect.min.x, p.y - rect.min.y)));
+        let mut passed: Vec<usize> = passed.collect();
+        passed.dedup();
+        let mesh = editor.surface().mesh();
+        faces.extend(passed.into_iter().flat_map(|f| reached(mesh.first_half_edge(FaceId::new(f)), false)));
+    }
+    faces.extend(editor.under.into_iter().flat_map(|(half, _)| reached(half, modifiers.alt)));
+    paint_over(editor, faces, at, held, response.clicked());
+}
+
+/// Where the pointer has been since the stroke's last frame: it is told of places with gaps between them, and a frame may take a while.
+pub(super) fn stroke(editor: &Editor, ui: &Ui, at: Pos2) -> Vec<Pos2> {
+    /// From place to place of a stroke [px].
+    const STEP: f32 = 3.0;
+    let Some(Gesture::Paint(PaintStroke { last, .. })) = editor.gesture else { return vec![at] };
+    let moved = |event: &egui::Event| match event {
+        egui::Event::PointerMoved(to) => Some(*to),
+        _ => None,
+    };
+    let told: Vec<Pos2> = ui.input(|input| input.events.iter().filter_map(moved).collect());
+    let mut from = last;
+    let mut way = Vec::new();
+    for to in told.into_iter().chain([at]) {
+        let steps = (from.distance(to) / STEP).ceil().max(1.0);
+        way.extend((1..=steps as usize).map(|i| from.lerp(to, i as f32 / steps)));
+        from = to;
+    }
+    way.dedup();
+    way
 }
 
 /// Paints what a stroke has reached, where the stitch in the hand fits. All of a stroke is one step of the history.
-pub(super) fn paint_over(editor: &mut Editor, mut faces: Vec<FaceId>, held: bool, clicked: bool) {
+pub(super) fn paint_over(editor: &mut Editor, mut faces: Vec<FaceId>, at: Pos2, held: bool, clicked: bool) {
     // A quick click is over before the next frame sees the button.
     let begins = clicked && editor.gesture.is_none();
     if !(held || begins) {
         return;
     }
-    let goes_on = if let Some(Gesture::Paint(reached)) = &editor.gesture {
-        faces.retain(|f| !reached.contains(f));
-        true
-    } else {
-        false
+    let mut stroke = match editor.gesture.take() {
+        Some(Gesture::Paint(stroke)) => stroke,
+        _ => PaintStroke { reached: HashSet::new(), last: at, has_painted: false },
     };
-    if let Some(Gesture::Paint(reached)) = &mut editor.gesture {
-        reached.extend(&faces);
-    } else if held {
-        editor.gesture = Some(Gesture::Paint(faces.clone()));
-    }
+    faces.retain(|f| stroke.reached.insert(*f));
+    stroke.last = at;
     let faces = editor.that_take(&editor.brush, &faces);
     if !faces.is_empty() {
         let command = Command::SetStitch { faces, stitch: editor.brush.clone() };
+        let goes_on = std::mem::replace(&mut stroke.has_painted, true);
         editor.request(if goes_on { Request::Amend(command) } else { Request::Do(command) });
     }
+    editor.gesture = (held && !stroke.reached.is_empty()).then_some(Gesture::Paint(stroke));
 }
 
 fn grab(editor: &mut Editor) {

@@ -23,7 +23,7 @@ use glam::Vec3;
 use patterns::diagram::Course;
 use sim_core::mesh_relax::{MeshRelaxation, StepFacts};
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -70,6 +70,17 @@ pub enum Request {
 }
 
 impl Request {
+    /// The file that it writes.
+    pub fn writes(&self) -> Option<&Path> {
+        match self {
+            Self::Save(path)
+            | Self::SaveInstructions(path, _)
+            | Self::SaveScript(path)
+            | Self::SaveChart(path, _) => Some(path),
+            _ => None,
+        }
+    }
+
     /// Whether what it does to the document is lost unless that is saved.
     fn changes(&self) -> bool {
         matches!(
@@ -153,7 +164,11 @@ impl Session {
         let work = Arc::new(Mutex::new(None));
         let mut worker = Worker {
             document: Document::new(project),
-            standing: Standing { path, ..Standing::default() },
+            standing: Standing {
+                home: path.clone().filter(|p| p.extension().is_some_and(|e| e == "purl")),
+                path,
+                ..Standing::default()
+            },
             work: Arc::clone(&work),
             latest: None,
             wake: Arc::clone(&wake),
@@ -302,12 +317,13 @@ impl Worker {
                 let file = path.clone();
                 let project = self.unless_cancelled(move || open_any(&file))?;
                 let message = format!("Opened {}", path.display());
-                self.take_up(project, path);
+                let home = path.extension().is_some_and(|e| e == "purl").then(|| path.clone());
+                self.take_up(project, path, home);
                 Ok(message)
             }
             Request::Begin(bundled) => {
                 let project = self.unless_cancelled(|| bundled.knitted(bundled.width))?;
-                self.take_up(project, PathBuf::from(bundled.name).with_extension("purl"));
+                self.take_up(project, PathBuf::from(bundled.name).with_extension("purl"), None);
                 Ok(format!("Begun: {}", bundled.name))
             }
             Request::Say(message) => Ok(message.into()),
@@ -321,13 +337,15 @@ impl Worker {
             Request::Save(path) => {
                 self.document.project().save(&path)?;
                 let message = format!("Saved {}", path.display());
-                (self.standing.path, self.standing.is_changed) = (Some(path), false);
+                (self.standing.path, self.standing.home) = (Some(path.clone()), Some(path));
+                self.standing.is_changed = false;
                 Ok(message)
             }
             Request::SaveInstructions(path, faces) => {
                 let text = told(self.document.project(), None, faces.as_deref())?;
                 files::write(&path, text.as_bytes())?;
-                Ok(format!("Saved the instructions as {}", path.display()))
+                let of = faces.map_or(String::new(), |f| format!(" for the {} selected stitches", f.len()));
+                Ok(format!("Saved the instructions{of} as {}", path.display()))
             }
             Request::SaveScript(path) => {
                 files::write(&path, write_script(self.document.done())?.as_bytes())?;
@@ -341,10 +359,11 @@ impl Worker {
     }
 
     /// Goes on with another project.
-    fn take_up(&mut self, project: Project, path: PathBuf) {
+    fn take_up(&mut self, project: Project, path: PathBuf, home: Option<PathBuf>) {
         self.document = Document::new(project);
-        self.standing.opened += 1;
-        (self.standing.path, self.standing.is_changed) = (Some(path), false);
+        let Standing { revision, placed, opened, .. } = self.standing;
+        let (opened, path) = (opened + 1, Some(path));
+        self.standing = Standing { revision, placed, opened, is_changed: false, path, home };
     }
 
     fn apply(&mut self, command: Command, amends: bool) -> Result<String> {

@@ -26,8 +26,10 @@ pub struct View {
     pub labelled_rows: Arc<Rows<LabelledMesh>>,
     /// Rows of the fabric.
     pub fabric_rows: Option<Arc<Rows<StitchMesh>>>,
-    /// The file it was read from or written to.
+    /// The file it was made from, or is to be written to.
     pub path: Option<PathBuf>,
+    /// The project file that it is in, if it is in one.
+    pub home: Option<PathBuf>,
     /// Names of the steps done, oldest first.
     pub done: Vec<String>,
     /// Names of the steps that were taken back, the next to be done again first.
@@ -44,6 +46,7 @@ pub(super) struct Standing {
     pub opened: u64,
     pub is_changed: bool,
     pub path: Option<PathBuf>,
+    pub home: Option<PathBuf>,
 }
 
 /// Facts about a project: they take longer to find than most edits, so they come after the view.
@@ -92,7 +95,7 @@ impl View {
     /// A view of `document`. What `before` has found about the same meshes is taken over.
     pub(super) fn of(
         document: &Document,
-        Standing { revision, placed, opened, is_changed, path }: Standing,
+        Standing { revision, placed, opened, is_changed, path, home }: Standing,
         message: Result<String, String>,
         before: Option<&Self>,
     ) -> Self {
@@ -118,6 +121,7 @@ impl View {
             fabric_rows,
             project,
             path,
+            home,
             done: document.steps().collect(),
             undone: document.undone().collect(),
             message,

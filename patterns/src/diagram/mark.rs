@@ -16,6 +16,8 @@ pub enum Ink {
     Grid,
     /// The box around a repeat.
     Red,
+    /// Squares of yarn in a colour, sRGB.
+    Yarn([u8; 3]),
 }
 
 impl Ink {
@@ -27,6 +29,19 @@ impl Ink {
             Self::Grey => [0xbc; 3],
             Self::Grid => [0x8c; 3],
             Self::Red => [0xc6, 0x28, 0x28],
+            Self::Yarn(rgb) => rgb,
+        }
+    }
+
+    /// The colour in which this is read best on squares of another.
+    fn on(self, ground: Self) -> Self {
+        /// Luma from which squares are light.
+        const LIGHT: f32 = 110.0;
+        let [r, g, b] = ground.rgb().map(f32::from);
+        match self {
+            Self::White => ground,
+            Self::Black if 0.299 * r + 0.587 * g + 0.114 * b < LIGHT => Self::White,
+            other => other,
         }
     }
 }
@@ -65,6 +80,15 @@ impl Mark {
     /// A filled dot.
     pub fn dot(middle: Point, radius: f32) -> Self {
         Self::area(arc(middle, [radius; 2], 0.0, 1.0), Ink::Black)
+    }
+
+    /// The same of a symbol on squares of a colour.
+    pub fn on(mut self, ground: Ink) -> Self {
+        self.paint = match self.paint {
+            Paint::Fill(ink) => Paint::Fill(ink.on(ground)),
+            Paint::Line(ink, width) => Paint::Line(ink.on(ground), width),
+        };
+        self
     }
 
     /// The same elsewhere.

@@ -8,6 +8,7 @@
 use super::Diagram;
 use std::collections::HashMap;
 use std::ops::Range;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::stitch::Stitch;
 
 /// Columns left out on a side, at the most.
@@ -22,8 +23,8 @@ pub struct Repeat {
     pub rows: Range<usize>,
 }
 
-/// What stands in a square: a stitch and which of its squares it is, and the same of a cable.
-type Square<'a> = (Option<&'a Stitch>, usize, Option<([&'a [u8]; 3], usize)>);
+/// What stands in a square: a stitch and which of its squares it is, the colour of its yarn, and the same of a cable.
+type Square<'a> = (Option<&'a Stitch>, usize, Dye, Option<([&'a [u8]; 3], usize)>);
 
 /// Squares as numbers, [row][column].
 fn squares(diagram: &Diagram) -> Vec<Vec<usize>> {
@@ -36,7 +37,7 @@ fn squares(diagram: &Diagram) -> Vec<Vec<usize>> {
                 let crossing = diagram.crossings.iter().find(|c| c.row == r && c.columns.contains(&column));
                 let crossing =
                     crossing.map(|c| ([&c.strands[..], &c.order, &c.front], column - c.columns.start));
-                let square = (cell.stitch.as_ref(), column - cell.columns.start, crossing);
+                let square = (cell.stitch.as_ref(), column - cell.columns.start, cell.dye, crossing);
                 let next = numbers.len();
                 squares.push(*numbers.entry(square).or_insert(next));
             }

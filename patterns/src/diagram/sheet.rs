@@ -4,6 +4,7 @@
 use super::mark::{Ink, Mark, Paint, Point, rectangle};
 use super::{Cell, Crossing, Diagram, DiagramRow, glyph, lettering};
 use std::collections::BTreeSet;
+use stitch_mesh::dye::Dye;
 use stitch_mesh::stitch::{Make, Stitch};
 
 /// Room for row numbers on both sides, and above and below the squares [squares].
@@ -34,6 +35,17 @@ fn square(at: Point, wide: usize, ink: Ink) -> impl Iterator<Item = Mark> {
     let line = Mark { points: outline.to_vec(), paint: Paint::Line(Ink::Grid, 0.035) };
     let area = (ink != Ink::White).then(|| Mark::area(outline[..4].iter().copied(), ink));
     area.into_iter().chain([line])
+}
+
+impl Cell {
+    /// What its squares are filled with.
+    fn ink(&self) -> Ink {
+        match (&self.stitch, self.dye) {
+            (None, _) => Ink::Grey,
+            (Some(_), Dye::UNDYED) => Ink::White,
+            (Some(_), Dye(rgb)) => Ink::Yarn(rgb),
+        }
+    }
 }
 
 impl Diagram {
@@ -68,16 +80,19 @@ impl Diagram {
         for (r, row) in self.rows.iter().enumerate() {
             for cell in &row.cells {
                 let at = self.corner(r, cell.columns.start);
-                let ink = if cell.stitch.is_some() { Ink::White } else { Ink::Grey };
+                let ink = cell.ink();
                 marks.extend(square(at, cell.columns.len(), ink));
                 let symbol = cell.stitch.as_ref().map(glyph::of).unwrap_or_default();
-                marks.extend(symbol.into_iter().map(|m| m.moved(at)));
+                marks.extend(symbol.into_iter().map(|m| m.moved(at).on(ink)));
             }
             marks.extend(self.number(r, row));
         }
         for crossing in &self.crossings {
             let at = self.corner(crossing.row, crossing.columns.start);
-            marks.extend(glyph::of_crossing(crossing).into_iter().map(|m| m.moved(at)));
+            let under =
+                self.rows[crossing.row].cells.iter().find(|c| c.columns.start == crossing.columns.start);
+            let ink = under.map_or(Ink::White, Cell::ink);
+            marks.extend(glyph::of_crossing(crossing).into_iter().map(|m| m.moved(at).on(ink)));
             let frame = rectangle(at, [crossing.columns.len() as f32, 1.0]);
             marks.push(Mark { points: frame.to_vec(), paint: Paint::Line(Ink::Grid, 0.035) });
         }
@@ -123,6 +138,14 @@ impl Diagram {
         for crossing in &self.crossings {
             let (wide, marks) = (crossing.columns.len(), glyph::of_crossing(crossing));
             add(Entry { wide, marks, ink: Ink::White, name: crossing.name() });
+        }
+        let dyes: BTreeSet<Dye> = self.cells().map(|(_, cell)| cell.dye).collect();
+        if dyes.len() > 1 {
+            for dye in dyes {
+                let ink = if dye == Dye::UNDYED { Ink::White } else { Ink::Yarn(dye.0) };
+                let name = if dye == Dye::UNDYED { "undyed yarn".into() } else { format!("yarn {dye}") };
+                add(Entry { wide: 1, marks: Vec::new(), ink, name });
+            }
         }
         if self.cells().any(|(_, c)| c.stitch.is_none()) {
             add(Entry { wide: 1, marks: Vec::new(), ink: Ink::Grey, name: "no stitch".into() });

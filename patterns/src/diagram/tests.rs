@@ -1,5 +1,6 @@
 //! Charts of small pieces of fabric.
 
+use super::mark::{Ink, Paint};
 use super::*;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::pieces::{from_rows, tube};
@@ -179,4 +180,22 @@ fn a_purl_is_a_dot_in_the_middle_of_its_square() {
     let [x, y] = middle(1);
     assert_eq!(pixel([x + 0.3, y]), 0xff, "beside the dot");
     assert_eq!(raster::draw(&chart.sheet(), 1e5), None);
+}
+
+#[test]
+fn dyed_yarn_shows_in_the_squares_and_in_the_legend() {
+    let plain = piece(&["p p p p", "k k k k", "p p p p", "k k k k"]);
+    let [dark, light] = [[0x30, 0x30, 0x34], [0xe6, 0x9f, 0x00]].map(Dye);
+    let mut dyed = plain.clone();
+    for (row, dye) in [(0, dark), (2, light)] {
+        plain.rows()[row].faces.iter().for_each(|f| dyed.set_dye(*f, dye).unwrap());
+    }
+    let (plain, dyed) = (chart(&plain), chart(&dyed));
+    let filled = |ink| dyed.marks().iter().filter(|m| m.paint == Paint::Fill(ink)).count();
+    assert_eq!([dark, light].map(|dye| filled(Ink::Yarn(dye.0))), [4, 4]);
+    assert_eq!([Ink::White, Ink::Black].map(filled), [4, 4], "dots of purls, white where the yarn is dark");
+    let legend = |diagram: &Diagram| diagram.sheet().marks.len() - diagram.marks().len();
+    assert!(legend(&dyed) > legend(&plain), "the colours are named");
+    assert_eq!(plain.repeat.map(|r| r.rows), Some(0..2));
+    assert_eq!(dyed.repeat.map(|r| r.rows), Some(0..4));
 }

@@ -148,7 +148,8 @@ fn show(editor: &mut Editor, ui: &mut Ui, name: &str, button: egui::Button<'_>) 
 
 /// Runs the actions whose keys were pressed.
 pub fn shortcuts(editor: &mut Editor, ctx: &egui::Context) {
-    if editor.search.is_some() || egui::Popup::is_any_open(ctx) {
+    let is_asking = editor.leaving.is_some() || editor.replacing.is_some();
+    if is_asking || editor.search.is_some() || egui::Popup::is_any_open(ctx) {
         return; // all keys are theirs
     }
     // Escape takes the focus from a text field before anybody else sees the key: it is still the field's.

@@ -3,6 +3,7 @@
 use crate::window::actions::button_as;
 use crate::window::editor::Editor;
 use egui::{Color32, Ui};
+use render::palette::StitchColors;
 use stitch_mesh::dye::Dye;
 
 /// Colours to begin with: undyed wool, and seven of Okabe and Ito's, told apart by every kind of colour vision.
@@ -43,4 +44,10 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         field.on_hover_text("Another colour");
         button_as(editor, ui, "Dye", "Dye the selection");
     });
+    let mut shows_yarn = editor.stitch_colors == StitchColors::Yarn;
+    let choice = ui.checkbox(&mut shows_yarn, "Colour stitches like their yarn");
+    if choice.on_hover_text("Otherwise stitches have the colour of their kind").changed() {
+        editor.stitch_colors = if shows_yarn { StitchColors::Yarn } else { StitchColors::default() };
+        editor.show_stage();
+    }
 }

@@ -3,6 +3,7 @@
 use crate::window::editor::Editor;
 use crate::window::session::Request;
 use egui::{Context, Id, Modal};
+use std::path::PathBuf;
 
 /// Where one wants to go.
 #[derive(Clone, Debug)]
@@ -72,15 +73,22 @@ pub fn show(editor: &mut Editor, context: &Context) {
     }
     let name = editor.view.path.as_ref().and_then(|p| p.file_name()).unwrap_or("this".as_ref());
     let asked = format!("Save what was done to {} first?", name.display());
+    let target = PathBuf::from(editor.panel.path.trim()).with_extension("purl");
+    let (told, save) = if editor.would_replace(&target) {
+        (format!("{} is another file, and would be replaced.", target.display()), "Replace it and go on")
+    } else {
+        (format!("It would be saved as {}.", target.display()), "Save and go on")
+    };
     let modal = Modal::new(Id::unique("leaving")).show(context, |ui| {
         ui.heading(asked);
         ui.label("It has not been saved since the last change.");
+        ui.label(told);
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            if ui.button("Save and go on").clicked() {
-                editor.save();
-                let is_named = editor.error.is_none();
-                editor.leaving = is_named.then_some(Leaving { to: to.clone(), is_saving: true });
+            if ui.button(save).clicked() {
+                let path = editor.named("purl");
+                editor.leaving = path.as_ref().map(|_| Leaving { to: to.clone(), is_saving: true });
+                path.into_iter().for_each(|path| editor.write_over(Request::Save(path)));
             }
             if ui.button("Go on without").clicked() {
                 editor.go(to.clone());

@@ -162,7 +162,10 @@ fn fields(editor: &mut Editor, ui: &mut Ui, color: Option<Dye>) {
             let mut shown = *value * scale;
             let label = ui.label(name);
             let speed = 0.01 * shown.max(1e-3);
-            let drag = egui::DragValue::new(&mut shown).suffix(unit).range(0.0..=f64::MAX);
+            let drag = egui::DragValue::new(&mut shown)
+                .suffix(unit)
+                .range(0.0..=f64::MAX)
+                .update_while_editing(false);
             let response = ui.add(drag.speed(speed).max_decimals(3)).labelled_by(label.id);
             if response.changed() {
                 *value = shown / scale;

@@ -11,6 +11,7 @@ mod material;
 mod palette;
 mod patterns;
 mod problems;
+pub mod replacing;
 pub mod right;
 mod scene;
 pub mod status;
@@ -28,6 +29,11 @@ use stitch_mesh::dye::Dye;
 /// A colour of the picture, linear RGB, as egui wants it.
 pub fn color32([r, g, b]: [f32; 3]) -> egui::Color32 {
     egui::Rgba::from_rgb(r, g, b).into()
+}
+
+/// What the path field says of a document.
+pub fn path_text(view: &View) -> String {
+    view.path.as_ref().map(|p| p.display().to_string()).unwrap_or_default()
 }
 
 /// What the panels remember between frames.
@@ -76,7 +82,7 @@ impl State {
     /// Fields as they stand for a freshly opened document.
     pub fn of(view: &View) -> Self {
         Self {
-            path: view.path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(),
+            path: path_text(view),
             width_mm: 1e3 * view.project.size.width,
             aspect: 4.0 / 3.0,
             scene: String::new(),

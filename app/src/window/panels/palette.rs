@@ -4,11 +4,16 @@ use super::color32;
 use crate::window::catalogue;
 use crate::window::editor::Editor;
 use egui::{Color32, Ui};
+use render::palette::{self, StitchColors};
 use stitch_mesh::catalogue::GROUPS;
 
-/// The colour of a stitch in the picture.
+/// The colour of a kind of stitches in the picture, or where that shows yarn, as it is otherwise.
 pub fn color(editor: &Editor, symbol: &str) -> Color32 {
-    color32(editor.stitch_colors.of(symbol, 0))
+    let colors = match editor.stitch_colors {
+        StitchColors::Yarn => StitchColors::default(),
+        colors => colors,
+    };
+    color32(colors.of(symbol, palette::YARN, 0))
 }
 
 /// Shows the palette.

@@ -36,7 +36,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         button(editor, ui, "Hold");
         button(editor, ui, "Let go");
     });
-    let holds = editor.yarn().map(|s| s.holds.clone()).unwrap_or_default();
+    let mut holds = editor.yarn().map(|s| s.holds.clone()).unwrap_or_default();
+    holds.retain(HoldFact::is_felt);
     for HoldFact { what, force_n } in holds.iter().take(MOST) {
         let [x, y, z] = (1e3 * *force_n).to_array();
         // In one label, which goes on in the next line where a name is long.

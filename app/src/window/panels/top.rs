@@ -6,6 +6,7 @@ use crate::window::actions::{button, button_as, choice};
 use crate::window::editor::Editor;
 use crate::window::navigation::Navigation;
 use crate::window::panels::leaving::Destination;
+use crate::window::panels::path_text;
 use crate::window::session::Request;
 use egui::Ui;
 use render::palette::StitchColors;
@@ -31,8 +32,9 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                 ui.add(field).on_hover_text("Where the project is saved; Enter opens what is there");
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Path"));
             if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
-                let path = PathBuf::from(editor.panel.path.trim());
-                editor.leave(Destination::Other(Request::Open(path)));
+                // From now on the field names this document again, or the one that comes.
+                let path = std::mem::replace(&mut editor.panel.path, path_text(&editor.view));
+                editor.leave(Destination::Other(Request::Open(PathBuf::from(path.trim()))));
             }
             button(editor, ui, "Save");
             ui.separator();
