@@ -112,15 +112,25 @@ pub(crate) fn repeated(worked: Worked, times: usize) -> Result<Worked> {
     Ok(Worked { rows, ..worked })
 }
 
+/// The rows of a fabric from one height to another, counted from 0.
+///
+/// # Errors
+/// There are none so high.
+pub(crate) fn rows_between(stitches: &StitchMesh, [first, last]: [usize; 2]) -> Result<Vec<Row>> {
+    stitches.rows_between([first, last]).with_context(|| {
+        let highest = stitches.rows_and_heights().1.last().copied().unwrap_or(0);
+        format!("there are no rows {first}–{last}: the fabric has rows 0–{highest}")
+    })
+}
+
 /// The part of a fabric that a region asks for: rows from the first to the last, and of them the given faces; all without it.
-fn region(all: &[Row], rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Result<HashSet<FaceId>> {
-    let [first, last] = rows.unwrap_or([0, all.len().saturating_sub(1)]);
-    let rows = all.get(first..=last).with_context(|| {
-        format!("there are no rows {first}–{last}: the fabric has rows 0–{}", all.len().saturating_sub(1))
-    })?;
-    let within: HashSet<FaceId> = rows.iter().flat_map(|row| row.faces.iter().copied()).collect();
+fn region(stitches: &StitchMesh, rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Result<HashSet<FaceId>> {
+    let within: HashSet<FaceId> = match rows {
+        Some(rows) => rows_between(stitches, rows)?.into_iter().flat_map(|row| row.faces).collect(),
+        None => stitches.mesh().faces().collect(),
+    };
     let Some(faces) = faces else { return Ok(within) };
-    let count: usize = all.iter().map(|row| row.faces.len()).sum();
+    let count = stitches.mesh().face_count();
     if let Some(face) = faces.iter().find(|f| **f as usize >= count) {
         bail!("there is no stitch {face}: the stitches are 0–{}", count.saturating_sub(1));
     }
@@ -141,7 +151,7 @@ pub fn tiled(
 ) -> Result<Tiled> {
     let stitches = &project.knitted()?.stitches;
     let all = stitches.rows();
-    let region = region(&all, rows, faces)?;
+    let region = region(stitches, rows, faces)?;
     Ok(tile(stitches, &all, &region, &Pattern::read(text)?, layout)?)
 }
 
@@ -152,7 +162,7 @@ pub fn tiled(
 pub fn told(project: &Project, rows: Option<[usize; 2]>, faces: Option<&[u32]>) -> Result<String> {
     let stitches = &project.knitted()?.stitches;
     let all = stitches.rows();
-    let region = region(&all, rows, faces)?;
+    let region = region(stitches, rows, faces)?;
     let part = |row: &Row| -> Option<Result<Row>> {
         let n = row.faces.len();
         let is_in = |i: usize| region.contains(&row.faces[i % n]);
@@ -174,11 +184,19 @@ pub fn told(project: &Project, rows: Option<[usize; 2]>, faces: Option<&[u32]>) 
         })
     };
     let chosen: Vec<Row> = all.iter().filter_map(part).collect::<Result<_>>()?;
-    let worked = instructions(stitches, &chosen)?;
+    // Stitches that end in a point are not worked: the yarn is drawn through their loops.
+    let is_gathered = |row: &Row| row.faces.iter().all(|f| stitches.stitch(*f).tops() == 0);
+    let (chosen, end) = match chosen.split_last() {
+        Some((last, rest)) if is_gathered(last) && !rest.is_empty() => {
+            (rest, "Cut the yarn and draw it through the last")
+        }
+        _ => (&chosen[..], "Bind off"),
+    };
+    let worked = instructions(stitches, chosen)?;
     let left = worked.rows.last().map_or(worked.cast_on, |row| row.loops);
     let joined = if worked.in_the_round { " and join in the round" } else { "" };
     Ok(format!(
-        "# Cast on {} stitches{joined}.\n{}# Bind off {left} stitches.\n",
+        "# Cast on {} stitches{joined}.\n{}# {end} {left} stitches.\n",
         worked.cast_on,
         write(&worked)
     ))

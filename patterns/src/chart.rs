@@ -216,6 +216,17 @@ mod tests {
         for (face, stitch) in set {
             assert_eq!(stitch, if face.0 / 2 % 2 == 0 { Stitch::knit() } else { Stitch::purl() }, "{face}");
         }
+        // Rows are counted alike in both.
+        let faces =
+            |rows| two.rows_between(rows).map(|rows| rows.into_iter().flat_map(|r| r.faces).collect());
+        let both: Vec<FaceId> = [2, 3, 4, 5, 10, 11, 12, 13].map(FaceId).to_vec();
+        let sorted = faces([1, 2]).map(|mut faces: Vec<FaceId>| {
+            faces.sort_unstable();
+            faces
+        });
+        assert_eq!(sorted, Some(both));
+        assert_eq!(faces([3, 4]), None);
+        assert_eq!(faces([2, 1]), None);
     }
 
     #[test]

@@ -349,6 +349,21 @@ impl StitchMesh {
     /// All rows, lower rows before those above them; a closed row begins above the beginning of the row below it, so that
     /// columns line up.
     pub fn rows(&self) -> Vec<Row> {
+        self.rows_and_heights().0
+    }
+
+    /// The rows at some heights, from the first to the last: of pieces that are knitted beside each other, and on both sides of a
+    /// neck, those of each. `None` where there are none so high.
+    pub fn rows_between(&self, [first, last]: [usize; 2]) -> Option<Vec<Row>> {
+        let (rows, heights) = self.rows_and_heights();
+        let exist = first <= last && heights.last().is_some_and(|highest| last <= *highest);
+        let within = rows.into_iter().zip(heights).filter(|(_, height)| (first..=last).contains(height));
+        exist.then(|| within.map(|(row, _)| row).collect())
+    }
+
+    /// All rows as [`Self::rows`] has them, and how high each lies: one more than the highest row below it, from 0, so that pieces that
+    /// are knitted beside each other count their rows alike.
+    pub fn rows_and_heights(&self) -> (Vec<Row>, Vec<usize>) {
         let mut row_of = vec![usize::MAX; self.mesh.face_count()];
         let mut rows = Vec::new();
         for face in self.mesh.faces() {
@@ -386,6 +401,7 @@ impl StitchMesh {
         order.sort_by_key(|r| (height[*r], *r));
         let mut sorted: Vec<Row> = Vec::with_capacity(rows.len());
         let mut begins = vec![false; self.mesh.face_count()];
+        let heights = order.iter().map(|r| height[*r]).collect();
         for r in order {
             let mut row = std::mem::take(&mut rows[r]);
             if row.closed
@@ -399,7 +415,7 @@ impl StitchMesh {
             begins[row.faces[0].index()] = true;
             sorted.push(row);
         }
-        sorted
+        (sorted, heights)
     }
 
     /// The row through a face, left to right.

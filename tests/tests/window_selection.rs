@@ -200,3 +200,20 @@ fn the_maya_preset_leaves_alt_to_the_camera() {
     window.double_click(at);
     assert_eq!(window.selected(), sorted(rows[2].clone()), "a double click takes the loop");
 }
+
+#[test]
+fn an_edge_on_the_border_is_hit_from_outside() {
+    let (mut window, rows) = fabric();
+    window.key(NONE, Key::Num1);
+    let [inside, middle] = [Some(0), None].map(|side| window.at_stitch(rows[0][3], side));
+    // The first lies four fifths of the way from the middle to the edge.
+    let out = (inside - middle).normalized();
+    let edge = middle + (inside - middle) * 1.25;
+    window.click(edge + out * 4.0, NONE);
+    assert_eq!(window.editor().selection().edges.len(), 1);
+    window.click(edge + out * 20.0, NONE);
+    assert_eq!(window.editor().selection().edges.len(), 0);
+    window.key(NONE, Key::Num2);
+    window.click(edge + out * 4.0, NONE);
+    assert!(window.selected().is_empty(), "a stitch is hit where it is");
+}

@@ -22,14 +22,15 @@ pub fn run(project: &Path, output: &Path, rows: Option<[usize; 2]>, print: Outpu
         n => format!("; {n} more rows are in other parts, which the window charts when they are selected"),
     };
     if let Some([first, last]) = rows {
-        if last >= courses.len() {
+        let highest = courses.last().map_or(0, |course| course.number);
+        if last >= highest {
             bail!(
                 "{name}: there are no rows {first}–{last}: the piece has rows 0–{}{other_parts}",
-                courses.len().saturating_sub(1)
+                highest.saturating_sub(1)
             );
         }
-        courses.truncate(last + 1);
-        courses.drain(..first);
+        // Courses are numbered from 1.
+        courses.retain(|course| (first + 1..=last + 1).contains(&course.number));
     }
     let chart = charts::write(stitches, &courses, output).context(name)?;
     let facts = json!({"file": output, "columns": chart.columns, "rows": chart.rows.len(), "rows_in_other_parts": others});

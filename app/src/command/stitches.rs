@@ -3,12 +3,12 @@
 
 use super::{check_face, pins};
 use crate::project::Project;
+use crate::written::rows_between;
 use anyhow::{Context, Result};
 use patterns::chart::Chart;
 use stitch_mesh::cable::Cable;
 use stitch_mesh::dye::Dye;
 use stitch_mesh::ids::{FaceId, VertexId};
-use stitch_mesh::label::Row;
 use stitch_mesh::patch::Patch;
 use stitch_mesh::seam::Seam;
 use stitch_mesh::stitch::Stitch;
@@ -48,13 +48,6 @@ fn faces(stitches: &StitchMesh, list: &[u32]) -> Result<Vec<FaceId>> {
     list.iter().map(|f| check_face(*f, count).map(|()| FaceId(*f))).collect()
 }
 
-/// Rows from the first to the last of a pair.
-fn some_rows(all: &[Row], [first, last]: [usize; 2]) -> Result<&[Row]> {
-    all.get(first..=last)
-        .filter(|r| !r.is_empty())
-        .with_context(|| format!("there are no rows {first}–{last}: the fabric has rows 0–{}", all.len() - 1))
-}
-
 pub(super) fn set_stitch(project: &mut Project, list: &[u32], stitch: &Stitch) -> Result<()> {
     restitch(project, |stitches| {
         faces(stitches, list)?.into_iter().try_for_each(|f| Ok(stitches.set_stitch(f, stitch.clone())?))
@@ -71,15 +64,14 @@ pub(super) fn set_chart(
     restitch(project, |stitches| {
         let set = match selected {
             None => {
-                let all = stitches.rows();
-                chart.over(stitches, some_rows(&all, rows.unwrap_or([0, all.len() - 1]))?)
+                let rows = rows.map_or_else(|| Ok(stitches.rows()), |rows| rows_between(stitches, rows))?;
+                chart.over(stitches, &rows)
             }
             Some(list) => {
                 let mut chosen = faces(stitches, list)?;
                 if let Some(rows) = rows {
-                    let all = stitches.rows();
                     let within: std::collections::HashSet<FaceId> =
-                        some_rows(&all, rows)?.iter().flat_map(|r| r.faces.iter().copied()).collect();
+                        rows_between(stitches, rows)?.into_iter().flat_map(|r| r.faces).collect();
                     chosen.retain(|f| within.contains(f));
                 }
                 chart.over_faces(stitches, &chosen)
@@ -150,9 +142,8 @@ pub(super) fn dye(project: &mut Project, list: &[u32], color: Dye) -> Result<()>
 
 pub(super) fn dye_rows(project: &mut Project, rows: [usize; 2], color: Dye) -> Result<()> {
     restitch(project, |stitches| {
-        let all = stitches.rows();
-        let mut faces = some_rows(&all, rows)?.iter().flat_map(|r| &r.faces);
-        faces.try_for_each(|f| Ok(stitches.set_dye(*f, color)?))
+        let mut faces = rows_between(stitches, rows)?.into_iter().flat_map(|r| r.faces);
+        faces.try_for_each(|f| Ok(stitches.set_dye(f, color)?))
     })
 }
 

@@ -85,16 +85,19 @@ fn chosen(hold: &Hold, fabric: &Fabric, state: &YarnState, origin: DVec3) -> Res
             Ok(of_stitches(fabric, &stitches.iter().map(|f| FaceId(*f)).collect()))
         }
         (None, None, Some(row), None) => {
-            let rows = fabric.stitches.rows();
+            let (_, heights) = fabric.stitches.rows_and_heights();
+            let Some(highest) = heights.last().copied() else {
+                bail!("nothing is knitted: there are no rows")
+            };
             let number = match row {
                 Row::Number(number) => number,
                 Row::Place(RowPlace::First) => 0,
-                Row::Place(RowPlace::Last) => rows.len().saturating_sub(1),
+                Row::Place(RowPlace::Last) => highest,
             };
-            let Some(row) = rows.get(number) else {
-                bail!("there is no row {number}: the rows are 0–{}", rows.len().saturating_sub(1));
+            let Some(rows) = fabric.stitches.rows_between([number; 2]) else {
+                bail!("there is no row {number}: the rows are 0–{highest}");
             };
-            Ok(of_stitches(fabric, &row.faces.iter().copied().collect()))
+            Ok(of_stitches(fabric, &rows.into_iter().flat_map(|row| row.faces).collect()))
         }
         (None, None, None, Some(Region { from, to })) => {
             let (a, b) = (origin + metres(from), origin + metres(to));

@@ -16,6 +16,9 @@ use stitch_mesh::ids::{EdgeId, FaceId, HalfEdgeId};
 /// Stiffness with which the hand holds a loop, over the stiffness of its yarn in stretch: firm, and far from tearing.
 const GRIP: f64 = 20.0;
 
+/// How far outside of the fabric the pointer still finds the edge on its border [px].
+const BESIDE: f32 = 6.0;
+
 /// What the hand holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tool {
@@ -70,12 +73,19 @@ fn work(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
         return;
     };
     let local = at - rect.min;
-    let ray = editor.camera.ray(Vec2::new(local.x, local.y), Vec2::new(rect.width(), rect.height()));
+    let size = Vec2::new(rect.width(), rect.height());
+    let ray = editor.camera.ray(Vec2::new(local.x, local.y), size);
     if let Some(Gesture::Grab(pin)) = editor.gesture {
         move_grabbed(editor, pin, ray);
         return;
     }
-    let hit = pick(&editor.faces, ray);
+    let hit = pick(&editor.faces, ray).or_else(|| {
+        // An edge on the border is pointed at from outside, too.
+        let is_edge = editor.selection().mode == Mode::Edge;
+        let around = (0..8).map(|i| Vec2::from_angle(std::f32::consts::TAU * i as f32 / 8.0) * BESIDE);
+        let mut rays = around.map(|off| editor.camera.ray(Vec2::new(local.x, local.y) + off, size));
+        is_edge.then(|| rays.find_map(|ray| pick(&editor.faces, ray)))?
+    });
     let first = |face: usize| editor.surface().mesh().first_half_edge(FaceId::new(face));
     editor.point_at(hit.map(|h| (HalfEdgeId::new(first(h.polygon).index() + h.edge), h.position)));
     if editor.navigation.takes_left_button(ui) {

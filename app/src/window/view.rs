@@ -71,23 +71,25 @@ pub struct Rows<M> {
     of: Arc<M>,
     /// All rows.
     pub rows: Vec<Row>,
+    /// The number of each row, from 0; those that are knitted beside each other have the same.
+    numbers: Vec<usize>,
     /// Row and place in it, [face_count]; none for faces without labels.
     place: Vec<Option<[u32; 2]>>,
 }
 
 impl<M> Rows<M> {
-    fn new(of: &Arc<M>, face_count: usize, rows: Vec<Row>) -> Self {
+    fn new(of: &Arc<M>, face_count: usize, rows: Vec<Row>, numbers: Vec<usize>) -> Self {
         let mut place = vec![None; face_count];
         for (r, row) in rows.iter().enumerate() {
             row.faces.iter().enumerate().for_each(|(i, f)| place[f.index()] = Some([r as u32, i as u32]));
         }
-        Self { of: of.clone(), rows, place }
+        Self { of: of.clone(), rows, numbers, place }
     }
 
-    /// Row of a face, its place in the row, and how many are in it; counted from 0.
+    /// Number of the row of a face, its place in the row, and how many are in it; counted from 0.
     pub fn place(&self, face: u32) -> Option<[usize; 3]> {
         let [row, place] = (*self.place.get(face as usize)?)?.map(|n| n as usize);
-        Some([row, place, self.rows[row].faces.len()])
+        Some([self.numbers[row], place, self.rows[row].faces.len()])
     }
 }
 
@@ -103,13 +105,17 @@ impl View {
         let labelled = &project.labelled;
         let labelled_rows =
             before.map(|b| &b.labelled_rows).filter(|r| Arc::ptr_eq(&r.of, labelled)).cloned();
-        let labelled_rows = labelled_rows
-            .unwrap_or_else(|| Arc::new(Rows::new(labelled, labelled.mesh().face_count(), labelled.rows())));
+        let labelled_rows = labelled_rows.unwrap_or_else(|| {
+            let rows = labelled.rows();
+            let numbers = (0..rows.len()).collect();
+            Arc::new(Rows::new(labelled, labelled.mesh().face_count(), rows, numbers))
+        });
         let fabric_rows = project.fabric.as_ref().map(|fabric| {
             let stitches = &fabric.stitches;
             let known = before.and_then(|b| b.fabric_rows.as_ref());
             known.filter(|r| r.of.shares_mesh_of(stitches)).cloned().unwrap_or_else(|| {
-                Arc::new(Rows::new(stitches, stitches.mesh().face_count(), stitches.rows()))
+                let (rows, heights) = stitches.rows_and_heights();
+                Arc::new(Rows::new(stitches, stitches.mesh().face_count(), rows, heights))
             })
         });
         Self {

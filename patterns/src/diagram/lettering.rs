@@ -4,7 +4,7 @@ use super::mark::{Ink, Mark, Paint, Point};
 
 /// The lines of each letter; a point is two digits, x from the left and y from two below the base line. Small letters are
 /// four high, tall ones and digits six.
-const LETTERS: [(char, &str); 47] = [
+const LETTERS: [(char, &str); 48] = [
     ('a', "4642 4536160503123243"),
     ('b', "0802 0516364543321203"),
     ('c', "4536160503123243"),
@@ -52,6 +52,7 @@ const LETTERS: [(char, &str); 47] = [
     ('/', "0238"),
     ('×', "0642 0246"),
     (';', "1201 1516"),
+    ('#', "1218 3238 0444 0646"),
 ];
 
 /// Unit of the letters' points over the height of a tall letter.

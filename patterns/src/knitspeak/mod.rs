@@ -67,6 +67,8 @@ use work::Check;
 pub struct Pattern {
     statements: Vec<Statement>,
     check: Option<Check>,
+    /// Where comments begin that look like one and are none.
+    unread_checks: Vec<usize>,
     lines: Lines,
 }
 
@@ -91,7 +93,8 @@ impl Pattern {
         let lines = Lines::new(text);
         let statements = parse::statements(&text.to_ascii_lowercase()).map_err(|fault| lines.error(fault))?;
         order::order(&statements).map_err(|fault| lines.error(fault))?;
-        Ok(Self { statements, check: check_line(text), lines })
+        let (check, unread_checks) = check_lines(text);
+        Ok(Self { statements, check, unread_checks, lines })
     }
 
     /// A fault found later, with its line and column.
@@ -108,16 +111,20 @@ impl Pattern {
     }
 }
 
-/// The comment with the writer's figures for a swatch, if there is one.
-fn check_line(text: &str) -> Option<Check> {
+/// The first comment with the writer's figures for a swatch, if there is one, and where those begin that cannot be read.
+fn check_lines(text: &str) -> (Option<Check>, Vec<usize>) {
+    let (mut check, mut unread) = (None, Vec::new());
     let mut at = 0;
     for line in text.split_inclusive('\n') {
-        if let Ok((cast_on, rows, most)) = figures.parse_next(&mut line.trim_start()) {
-            return Some(Check { cast_on, rows, most, at });
+        let comment = line.trim_start().strip_prefix('#').map(str::trim_start);
+        match figures.parse_next(&mut line.trim_start()) {
+            Ok((cast_on, rows, most)) => drop(check.get_or_insert(Check { cast_on, rows, most, at })),
+            Err(_) if comment.is_some_and(|c| c.starts_with("check:")) => unread.push(at),
+            Err(_) => {}
         }
         at += line.len();
     }
-    None
+    (check, unread)
 }
 
 fn figures(line: &mut &str) -> winnow::Result<(usize, usize, usize)> {

@@ -15,6 +15,10 @@ use stitch_mesh::stitch::{Make, Op, Stitch};
 /// Steps at the most in a whole pattern.
 const MOST_STEPS: usize = 4_000_000;
 
+/// Said of a comment that begins like the writer's figures and does not go on so.
+const UNREAD_CHECK: &str =
+    "figures that nothing is checked by: expected 'check: cast on 17, rows 6, most stitches 17'";
+
 /// A pattern with a certain number of stitches, worked out stitch by stitch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Worked {
@@ -107,7 +111,8 @@ pub(super) fn work(pattern: &Pattern, width: Width) -> Result<Worked, Fault> {
     }
     let doubts = doubts(&order, &pattern.statements, &worked)
         .chain(pattern.check.iter().flat_map(|check| check.doubts(&worked)))
-        .chain(order.doubts.iter().cloned());
+        .chain(order.doubts.iter().cloned())
+        .chain(pattern.unread_checks.iter().map(|at| (*at, UNREAD_CHECK.to_owned())));
     let mut doubts: Vec<_> = doubts.collect();
     doubts.sort();
     worked.warnings = doubts.into_iter().map(|(at, text)| pattern.lines.warning(at, text)).collect();

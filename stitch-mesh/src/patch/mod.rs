@@ -115,6 +115,19 @@ pub enum PatchError {
         /// Those of the patch.
         needs: usize,
     },
+    /// A stitch that works other numbers of loops than the one that is there.
+    #[error(
+        "stitch {face} is {has}, and the patch has {stitch} there, which works other numbers of loops: a patch goes where increases and \
+         decreases lie as they do in it"
+    )]
+    Shape {
+        /// The face.
+        face: FaceId,
+        /// Its stitch.
+        has: String,
+        /// That of the patch.
+        stitch: String,
+    },
     /// A stitch that does not fit.
     #[error(transparent)]
     Stitch(#[from] StitchMeshError),
@@ -228,6 +241,11 @@ impl Patch {
                 let Some(PatchStitch { stitch, color, wrapping }) = stitch else { continue };
                 let column = row.begins.wrapping_add(i);
                 let face = line.at(column)?;
+                let has = stitches.stitch(face);
+                if (has.bottoms(), has.tops()) != (stitch.bottoms(), stitch.tops()) {
+                    let [has, stitch] = [has, stitch].map(ToString::to_string);
+                    return Err(PatchError::Shape { face, has, stitch });
+                }
                 after.set_stitch(face, stitch.clone())?;
                 after.set_dye(face, *color)?;
                 after.set_wrapping(face, *wrapping)?;

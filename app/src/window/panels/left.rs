@@ -23,7 +23,9 @@ pub enum Tab {
 
 /// Shows the panel.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
-    egui::Panel::left("tools").exact_size(216.0).resizable(false).show(ui, |ui| {
+    egui::Panel::left("tools").exact_size(222.0).resizable(false).show(ui, |ui| {
+        // Beside what is scrolled, not over it.
+        ui.spacing_mut().scroll.floating_allocated_width = 6.0;
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 let tools: &[(&str, Tool)] = match editor.stage {

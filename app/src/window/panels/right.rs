@@ -1,12 +1,15 @@
 //! Facts, problems, history.
 
 use super::{history, palette, problems};
+use crate::window::catalogue::describe;
 use crate::window::editor::Editor;
 use egui::Ui;
 
 /// Shows the panel.
 pub fn show(editor: &mut Editor, ui: &mut Ui) {
-    egui::Panel::right("facts").exact_size(230.0).resizable(false).show(ui, |ui| {
+    egui::Panel::right("facts").exact_size(236.0).resizable(false).show(ui, |ui| {
+        // Beside what is scrolled, not over it.
+        ui.spacing_mut().scroll.floating_allocated_width = 6.0;
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             facts(editor, ui);
             ui.separator();
@@ -29,7 +32,8 @@ fn facts(editor: &Editor, ui: &mut Ui) {
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
                 ui.painter().rect_filled(rect, 2.0, palette::color(editor, symbol));
-                ui.label(format!("{count} × {symbol}"));
+                let name = symbol.parse().map_or_else(|_| symbol.clone(), |stitch| describe(&stitch));
+                ui.label(format!("{count} × {name}"));
             });
         }
     }

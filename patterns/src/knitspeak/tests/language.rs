@@ -170,6 +170,11 @@ fn counts_are_checked() {
             "line 1, column 1: the check line says rows 2, but there are 1"
         ]
     );
+    let unread = &warnings("# Bananas\n# check: cast on 4, rows 1\nRow 1: Knit.", 4)[..];
+    assert!(
+        unread.len() == 1 && unread[0].starts_with("line 2, column 1: figures that nothing"),
+        "{unread:?}"
+    );
     assert_eq!(
         warnings("Row 1 (RS): Knit.\nRow 2 (RS): Knit.", 4),
         ["line 2, column 1: row 2 is said to be on the other side than row 1 makes it"]
