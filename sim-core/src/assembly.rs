@@ -330,7 +330,7 @@ mod tests {
             contact.wrapping = Wrapping { modulus: 20.0, angle: Some(0.6) };
         }
         let (draft, middle) = ("twill".parse().unwrap(), DVec3::X);
-        let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(Dye);
+        let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(|rgb| Dye(rgb).into());
         let cloth = Woven { draft, ends: 5, picks: 4, spacing: 2e-3, warp, weft, middle, flat: false };
         net.append(cloth.lay());
         let net = Arc::new(net);

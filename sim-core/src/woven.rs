@@ -135,8 +135,8 @@ mod tests {
             ends: 9,
             picks: 9,
             spacing: 2e-3,
-            warp: Dye::UNDYED,
-            weft: Dye([200, 30, 30]),
+            warp: Dye::UNDYED.into(),
+            weft: Dye([200, 30, 30]).into(),
             middle: DVec3::ZERO,
             flat: false,
         };

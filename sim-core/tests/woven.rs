@@ -17,7 +17,7 @@ const SPACING: f64 = 1.5e-3;
 
 fn cloth(draft: &str, count: usize, flat: bool) -> Arc<YarnNet> {
     let draft = draft.parse().unwrap();
-    let [warp, weft] = [[200, 180, 160], [40, 60, 120]].map(Dye);
+    let [warp, weft] = [[200, 180, 160], [40, 60, 120]].map(|rgb| Dye(rgb).into());
     let middle = DVec3::ZERO;
     Arc::new(Woven { draft, ends: count, picks: count, spacing: SPACING, warp, weft, middle, flat }.lay())
 }

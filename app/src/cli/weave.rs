@@ -7,8 +7,7 @@ use crate::inspect::inspect;
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use std::path::Path;
-use stitch_mesh::dye::Dye;
-use stitch_mesh::weave::{WeaveDraft, Woven};
+use stitch_mesh::weave::{Stripes, WeaveDraft, Woven};
 
 /// What is woven.
 #[derive(clap::Args)]
@@ -22,12 +21,12 @@ pub struct Piece {
     /// Distance from a yarn to the next in millimetres
     #[arg(long, value_name = "MM", default_value_t = 1.0)]
     spacing: f64,
-    /// Colour of the warp, as #rrggbb
-    #[arg(long, value_name = "COLOUR", default_value_t = Dye::UNDYED)]
-    warp: Dye,
-    /// Colour of the weft, as #rrggbb
-    #[arg(long, value_name = "COLOUR", default_value_t = Dye::UNDYED)]
-    weft: Dye,
+    /// Colours of the warp from the left, as #rrggbb, or as #rrggbb*4,#rrggbb*2 with the number of yarns of each
+    #[arg(long, value_name = "COLOURS", default_value_t)]
+    warp: Stripes,
+    /// Colours of the weft from below
+    #[arg(long, value_name = "COLOURS", default_value_t)]
+    weft: Stripes,
     /// Lies, its front upwards, instead of standing
     #[arg(long)]
     flat: bool,
@@ -49,7 +48,8 @@ fn draft(name: &Path) -> Result<WeaveDraft> {
 
 /// Weaves a piece of cloth as a project of its own.
 pub fn weave(name: &Path, piece: &Piece, output: &Path, print: Output) -> Result<()> {
-    let Piece { ends, picks, spacing, warp, weft, flat } = *piece;
+    let Piece { ends, picks, spacing, flat, .. } = *piece;
+    let (warp, weft) = (piece.warp.clone(), piece.weft.clone());
     let middle = DVec3::ZERO;
     let draft = draft(name)?;
     let project = cloth(Woven { draft, ends, picks, spacing: spacing * 1e-3, warp, weft, middle, flat })?;

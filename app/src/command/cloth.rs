@@ -7,9 +7,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sim_core::Surgery;
 use std::sync::Arc;
-use stitch_mesh::dye::Dye;
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::weave::{FILL, WeaveDraft, Woven};
+use stitch_mesh::weave::{FILL, Stripes, WeaveDraft, Woven};
 
 /// Room between a new piece and what is there, in spacings.
 const ROOM: f64 = 8.0;
@@ -27,12 +26,12 @@ pub struct Weave {
     /// Distance from a yarn to the next [mm]; as close as the thicker of both allows if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacing_mm: Option<f64>,
-    /// Colour of the warp, `#rrggbb`.
+    /// Colours of the warp from the left, `#rrggbb` or `#rrggbb*4,#rrggbb*2`.
     #[serde(default)]
-    pub warp: Dye,
-    /// Colour of the weft, `#rrggbb`.
+    pub warp: Stripes,
+    /// Colours of the weft from below.
     #[serde(default)]
-    pub weft: Dye,
+    pub weft: Stripes,
     /// Its middle [mm]; to the right of what is there if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_mm: Option<[f64; 3]>,
@@ -44,14 +43,17 @@ pub struct Weave {
 impl Weave {
     /// Adds the piece.
     pub(super) fn perform(&self, project: &mut Project) -> Result<()> {
-        let Self { ref draft, ends, picks, warp, weft, flat, .. } = *self;
-        let radius = [warp, weft].map(|dye| project.materials.of(dye).drawn_radius);
-        let spacing = self.spacing_mm.map_or(radius[0].max(radius[1]) / FILL, |mm| mm * 1e-3);
+        let Self { draft, warp, weft, .. } = self;
+        let Self { ends, picks, flat, .. } = *self;
+        let radii = warp.dyes().chain(weft.dyes()).map(|dye| project.materials.of(dye).drawn_radius);
+        let thickest = radii.fold(0.0, f64::max);
+        let spacing = self.spacing_mm.map_or(thickest / FILL, |mm| mm * 1e-3);
         let middle = match self.at_mm {
             Some(mm) => DVec3::from_array(mm) * 1e-3,
             None => beside(project, 0.5 * spacing * (ends as f64 + ROOM)),
         };
-        let piece = Woven { draft: draft.clone(), ends, picks, spacing, warp, weft, middle, flat };
+        let (draft, warp, weft) = (draft.clone(), warp.clone(), weft.clone());
+        let piece = Woven { draft, ends, picks, spacing, warp, weft, middle, flat };
         piece.check()?;
         let fabric = match &project.fabric {
             Some(fabric) if fabric.surgery != Surgery::default() => {
@@ -126,8 +128,8 @@ mod tests {
             ends: 10,
             picks: 7,
             spacing: 1e-3,
-            warp: Dye([200, 0, 0]),
-            weft: Dye::UNDYED,
+            warp: "#c80000*2,#303034".parse().unwrap(),
+            weft: Stripes::default(),
             middle: DVec3::ZERO,
             flat: true,
         };

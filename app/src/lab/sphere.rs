@@ -16,11 +16,10 @@ use patterns::knitspeak::{Pattern, Width};
 use render::{Drawing, NamedView};
 use sim_core::{Body, Material, Materials, Scene, Simulator, curves};
 use std::sync::Arc;
-use stitch_mesh::dye::Dye;
 use stitch_mesh::edge_counts::StitchSize;
 use stitch_mesh::lay::lay;
 use stitch_mesh::stitch_mesh::StitchMesh;
-use stitch_mesh::weave::{FILL, Woven};
+use stitch_mesh::weave::{FILL, Stripes, Woven};
 use stitch_mesh::yarn_net::YarnNet;
 
 /// Names in the pattern library, and how often each is repeated across and upwards to come out at about the same size.
@@ -93,8 +92,8 @@ fn woven() -> Result<Fabric> {
         ends: WOVEN,
         picks: WOVEN,
         spacing: material.drawn_radius / FILL,
-        warp: Dye::UNDYED,
-        weft: Dye::UNDYED,
+        warp: Stripes::default(),
+        weft: Stripes::default(),
         middle: DVec3::ZERO,
         flat: false,
     };

@@ -63,12 +63,12 @@ impl Woven {
         for end in 0..self.ends {
             let mut run =
                 (0..self.picks).map(|pick| (pick * self.ends + end, self.draft.at(end, pick) == Cell::Warp));
-            weave(&mut run, beyond(self.picks).map(|t| place(end as f64, t)), self.warp);
+            weave(&mut run, beyond(self.picks).map(|t| place(end as f64, t)), self.warp.at(end));
         }
         for pick in 0..self.picks {
             let mut run =
                 (0..self.ends).map(|end| (pick * self.ends + end, self.draft.at(end, pick) == Cell::Weft));
-            weave(&mut run, beyond(self.ends).map(|s| place(s, pick as f64)), self.weft);
+            weave(&mut run, beyond(self.ends).map(|s| place(s, pick as f64)), self.weft.at(pick));
         }
         // The warp was there first; where the weft lies in front they change places.
         for (i, node) in net.nodes[..crossings].iter_mut().enumerate() {

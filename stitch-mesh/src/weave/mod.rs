@@ -15,12 +15,13 @@
 
 mod draft;
 mod lay;
+mod stripes;
 #[cfg(test)]
 mod tests;
 
 pub use draft::{Cell, DraftError, WeaveDraft};
+pub use stripes::{Stripes, StripesError};
 
-use crate::dye::Dye;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -43,10 +44,10 @@ pub struct Woven {
     pub picks: usize,
     /// Distance from a yarn to the next [m].
     pub spacing: f64,
-    /// Colour of the warp.
-    pub warp: Dye,
-    /// Colour of the weft.
-    pub weft: Dye,
+    /// Colours of the warp, from the left.
+    pub warp: Stripes,
+    /// Colours of the weft, from below.
+    pub weft: Stripes,
     /// The middle of the piece [m].
     pub middle: DVec3,
     /// Whether it lies, its front upwards, instead of standing with its front towards +z.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::dye::Dye;
 use crate::ids::VisitId;
 use crate::yarn_net::{NodeKind, YarnNet};
 
@@ -8,8 +9,8 @@ fn piece(draft: &str, ends: usize, picks: usize) -> Woven {
         ends,
         picks,
         spacing: 2e-3,
-        warp: Dye([1, 2, 3]),
-        weft: Dye([4, 5, 6]),
+        warp: Dye([1, 2, 3]).into(),
+        weft: Dye([4, 5, 6]).into(),
         middle: DVec3::new(0.1, 0.2, 0.3),
         flat: false,
     }
@@ -137,5 +138,16 @@ fn a_piece_lies_where_it_is_put() {
         assert!((front.length() - 8e-3 * 12e-3).abs() < 1e-12);
         assert!(net.nodes.iter().all(|n| n.normal.dot(front) > 0.0));
         assert_eq!(net.nodes[0].normal, if woven.flat { DVec3::Y } else { DVec3::Z });
+    }
+}
+
+#[test]
+fn stripes_of_warp_and_weft_make_checks() {
+    let [red, black] = [[0xc0, 0x40, 0x30], [0x30, 0x30, 0x34]].map(Dye);
+    let (warp, weft) = ("#c04030*2,#303034".parse().unwrap(), black.into());
+    let cloth = Woven { warp, weft, ..piece("plain", 4, 2) };
+    let net = cloth.lay();
+    for (yarn, dye) in net.yarns.iter().zip([red, red, black, red, black, black]) {
+        assert!(yarn.visits.clone().all(|v| net.visits[v as usize].dye == dye));
     }
 }

@@ -33,7 +33,8 @@ fn facts(editor: &Editor, ui: &mut Ui) {
                 let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
                 ui.painter().rect_filled(rect, 2.0, palette::color(editor, symbol));
                 let name = symbol.parse().map_or_else(|_| symbol.clone(), |stitch| describe(&stitch));
-                ui.label(format!("{count} × {name}"));
+                // In one line; the pointer shows the rest of long names.
+                ui.add(egui::Label::new(format!("{count} × {name}")).truncate());
             });
         }
     }

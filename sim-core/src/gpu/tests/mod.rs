@@ -63,7 +63,7 @@ fn ten_fabrics() -> Vec<(&'static str, YarnNet)> {
         contact.wrapping = Wrapping { modulus: 2.0, angle: Some(0.6) };
     }
     let draft = "twill".parse().unwrap();
-    let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(Dye);
+    let [warp, weft] = [[200, 0, 0], [0, 200, 0]].map(|rgb| Dye(rgb).into());
     let cloth =
         Woven { draft, ends: 6, picks: 5, spacing: 2e-3, warp, weft, middle: glam::DVec3::ZERO, flat: false };
     vec![
