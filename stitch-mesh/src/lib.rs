@@ -25,6 +25,7 @@ pub mod patch;
 pub mod pieces;
 mod reface;
 mod region;
+mod rows;
 pub mod seam;
 mod sides;
 pub mod stitch;

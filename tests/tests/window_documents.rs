@@ -18,13 +18,18 @@ fn begin(window: &mut Window, name: &str) {
     window.press(name);
 }
 
-/// Opens a file by its path.
-fn open(window: &mut Window, path: &Path) {
+/// Writes a path into its field, and presses a key there.
+fn type_path(window: &mut Window, path: &Path, end: Key) {
     window.harness.get_by_label("Path").focus();
     window.harness.step();
     window.key(Modifiers::COMMAND, Key::A);
     window.harness.get_by_label("Path").type_text(path.to_str().unwrap());
-    window.key(Modifiers::NONE, Key::Enter);
+    window.key(Modifiers::NONE, end);
+}
+
+/// Opens a file by its path.
+fn open(window: &mut Window, path: &Path) {
+    type_path(window, path, Key::Enter);
 }
 
 fn faces(editor: &Editor) -> usize {
@@ -73,11 +78,7 @@ fn work_that_has_not_been_saved_is_asked_about() {
     window.press("Stay");
     assert_eq!(window.purls(), purls);
     // Save, and go on.
-    window.harness.get_by_label("Path").focus();
-    window.harness.step();
-    window.key(Modifiers::COMMAND, Key::A);
-    window.harness.get_by_label("Path").type_text(path.to_str().unwrap());
-    window.key(Modifiers::NONE, Key::Escape);
+    type_path(&mut window, &path, Key::Escape);
     begin(&mut window, "cowl");
     window.press("Save and go on");
     window
@@ -141,11 +142,7 @@ fn another_file_is_not_replaced_without_asking() {
     window.press("Front");
     window.click_stitch(rows[0][0], None, Modifiers::NONE);
     window.key(Modifiers::NONE, Key::P);
-    window.harness.get_by_label("Path").focus();
-    window.harness.step();
-    window.key(Modifiers::COMMAND, Key::A);
-    window.harness.get_by_label("Path").type_text(path.to_str().unwrap());
-    window.key(Modifiers::NONE, Key::Escape);
+    type_path(&mut window, &path, Key::Escape);
     window.press("Save");
     window.keep("replacing");
     window.press("Keep it");
@@ -169,11 +166,7 @@ fn what_cannot_be_saved_is_not_left() {
     window.press("Front");
     window.click_stitch(rows[0][0], None, Modifiers::NONE);
     window.key(Modifiers::NONE, Key::P);
-    window.harness.get_by_label("Path").focus();
-    window.harness.step();
-    window.key(Modifiers::COMMAND, Key::A);
-    window.harness.get_by_label("Path").type_text("/no/such/folder/mine.purl");
-    window.key(Modifiers::NONE, Key::Escape);
+    type_path(&mut window, "/no/such/folder/mine.purl".as_ref(), Key::Escape);
     begin(&mut window, "cowl");
     window.press("Save and go on");
     window.rest();

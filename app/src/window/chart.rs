@@ -4,8 +4,8 @@
 use super::actions;
 use super::editor::Editor;
 use super::pointer::{Tool, modifiers_of_click, paint_over, stroke};
+use super::request::Request;
 use super::selection::{Change, Mode, Picked};
-use super::session::Request;
 use crate::drawing::Stage;
 use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use glam::Vec3;

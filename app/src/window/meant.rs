@@ -2,8 +2,8 @@
 
 use super::editor::Editor;
 use super::pointer::Tool;
+use super::request::Request;
 use super::selection::{Change, Picked, Selection};
-use super::session::Request;
 use super::surface::Surface;
 use crate::command::Command;
 use crate::drawing::Stage;

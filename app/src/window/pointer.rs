@@ -2,8 +2,8 @@
 
 use super::editor::Editor;
 use super::navigation::Navigation;
+use super::request::Request;
 use super::selection::{Change, Mode, Picked};
-use super::session::Request;
 use crate::command::Command;
 use crate::drawing::Stage;
 use egui::{Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};

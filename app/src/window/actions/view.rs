@@ -5,7 +5,7 @@ use crate::drawing::Stage;
 use crate::window::editor::Editor;
 use crate::window::panels::leaving::Destination;
 use crate::window::pointer::Tool;
-use crate::window::session::Request;
+use crate::window::request::Request;
 use egui::{Key, Modifiers};
 use render::NamedView;
 use sim_core::SimCommand;

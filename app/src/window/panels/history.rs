@@ -2,7 +2,7 @@
 
 use crate::window::actions::button;
 use crate::window::editor::Editor;
-use crate::window::session::Request;
+use crate::window::request::Request;
 use egui::{RichText, Ui};
 
 /// Shows it, the latest step on top, above the beginning.

@@ -1,7 +1,7 @@
 //! Before work that has not been saved is left: whether to save it.
 
 use crate::window::editor::Editor;
-use crate::window::session::Request;
+use crate::window::request::Request;
 use egui::{Context, Id, Modal};
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! Before a file that this document is not in is written over: whether it may be.
 
 use crate::window::editor::Editor;
-use crate::window::session::Request;
+use crate::window::request::Request;
 use egui::{Context, Id, Modal};
 use std::path::{Path, PathBuf};
 

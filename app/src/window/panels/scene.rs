@@ -3,7 +3,7 @@
 use crate::scenes;
 use crate::window::actions::button;
 use crate::window::editor::Editor;
-use crate::window::session::Request;
+use crate::window::request::Request;
 use egui::Ui;
 use sim_core::HoldFact;
 

@@ -7,7 +7,7 @@ use crate::window::editor::Editor;
 use crate::window::navigation::Navigation;
 use crate::window::panels::leaving::Destination;
 use crate::window::panels::path_text;
-use crate::window::session::Request;
+use crate::window::request::Request;
 use egui::Ui;
 use render::palette::StitchColors;
 use std::path::PathBuf;
