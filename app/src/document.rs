@@ -66,6 +66,7 @@ impl Document {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<()> {
+        self.close_step();
         let done = command.perform(&self.project, &mut unwatched)?;
         self.keep(command, done, false);
         Ok(())
@@ -82,17 +83,23 @@ impl Document {
         Ok(())
     }
 
-    /// Takes over what a command has made of the project, worked out elsewhere; as a step of its own or as part of the last.
+    /// What amends the last step from now on begins one instead.
+    pub(crate) fn close_step(&mut self) {
+        self.is_open = false;
+    }
+
+    /// Takes over what a command has made of the project, worked out elsewhere; as a step of its own or as part of the last. Says
+    /// whether anything is another than before.
     pub(crate) fn keep(
         &mut self,
         command: Command,
         (after, survivors): (Project, Option<Survivors>),
         amends: bool,
-    ) {
+    ) -> bool {
         let amends = amends && self.is_open;
         if after.is_as(&self.project) {
             self.is_open = amends;
-            return;
+            return false;
         }
         let before = std::mem::replace(&mut self.project, after);
         self.undone.clear();
@@ -100,7 +107,7 @@ impl Document {
         let survivors = survivors.map(Arc::new);
         let Some(step) = self.done.last_mut().filter(|_| amends) else {
             self.done.push(Step::new(vec![command], before, survivors));
-            return;
+            return true;
         };
         step.survivors = match (step.survivors.take(), survivors) {
             (Some(first), Some(second)) => Some(Arc::new(through_both(&first, &second))),
@@ -110,6 +117,7 @@ impl Document {
             Some((both, last)) => *last = both,
             None => step.commands.push(command),
         }
+        true
     }
 
     /// Takes back the last command. False if there is none.
@@ -269,6 +277,9 @@ mod tests {
         assert!(document.undo());
         document.amend(purl(6)).unwrap();
         assert_eq!(document.steps().len(), 2, "what was undone to is no step to go on with");
+        assert!(document.apply(purl(99)).is_err());
+        document.amend(purl(7)).unwrap();
+        assert_eq!(document.steps().len(), 3, "nor is what came before a command that failed");
     }
 
     #[test]

@@ -80,7 +80,7 @@ impl Project {
             (fabric, before) => fabric.is_none() && before.is_none(),
         };
         fabrics
-            && Arc::ptr_eq(&self.labelled, &other.labelled)
+            && (Arc::ptr_eq(&self.labelled, &other.labelled) || self.labelled == other.labelled)
             && self.size == other.size
             && self.materials == other.materials
             && self.scene == other.scene

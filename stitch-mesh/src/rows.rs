@@ -18,7 +18,8 @@ impl StitchMesh {
         let (rows, heights) = self.rows_and_heights();
         let exist = first <= last && heights.last().is_some_and(|highest| last <= *highest);
         let within = rows.into_iter().zip(heights).filter(|(_, height)| (first..=last).contains(height));
-        exist.then(|| within.map(|(row, _)| row).collect())
+        let within: Vec<Row> = within.map(|(row, _)| row).collect();
+        (exist && !within.is_empty()).then_some(within)
     }
 
     /// All rows as [`Self::rows`] has them, and how high each lies: one more than the highest row below it, from 0, so that pieces that
@@ -61,7 +62,9 @@ impl StitchMesh {
         order.sort_by_key(|r| (height[*r], *r));
         let mut sorted: Vec<Row> = Vec::with_capacity(rows.len());
         let mut begins = vec![false; self.mesh().face_count()];
-        let heights = order.iter().map(|r| height[*r]).collect();
+        // In a circle they are counted as they come.
+        let is_circle = stacked.iter().any(|[below, r]| height[*below] >= height[*r]);
+        let heights = (0..).zip(&order).map(|(i, r)| if is_circle { i } else { height[*r] }).collect();
         for r in order {
             let mut row = std::mem::take(&mut rows[r]);
             if row.closed

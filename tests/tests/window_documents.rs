@@ -155,7 +155,14 @@ fn another_file_is_not_replaced_without_asking() {
     window.key(Modifiers::NONE, Key::T);
     window.key(Modifiers::COMMAND, Key::S);
     assert!(!window.says("Replace"));
-    assert!(std::fs::read(&path).unwrap() != after);
+    let after = std::fs::read(&path).unwrap();
+    // To the next document it is a stranger's again.
+    begin(&mut window, "swatch");
+    type_path(&mut window, &path, Key::Escape);
+    window.press("Save");
+    assert!(window.says("Replace"));
+    window.key(Modifiers::NONE, Key::Escape);
+    assert_eq!(std::fs::read(&path).unwrap(), after);
 }
 
 #[test]

@@ -31,6 +31,9 @@ pub fn run(project: &Path, output: &Path, rows: Option<[usize; 2]>, print: Outpu
         }
         // Courses are numbered from 1.
         courses.retain(|course| (first + 1..=last + 1).contains(&course.number));
+        if courses.is_empty() {
+            bail!("{name}: rows {first}–{last} are not in this piece{other_parts}");
+        }
     }
     let chart = charts::write(stitches, &courses, output).context(name)?;
     let facts = json!({"file": output, "columns": chart.columns, "rows": chart.rows.len(), "rows_in_other_parts": others});

@@ -299,11 +299,13 @@ fn run(arguments: Arguments) -> Result<()> {
     match verb {
         Verb::Demo { out, output } => demo::run(&out, output),
         Verb::New { mesh, output, stitch_size, unit, script, print } => {
+            files::check_ending(&output, "purl", "projects")?;
             let project = new::new(&mesh, unit.into(), stitch_size, script.as_deref())?;
             project.save(&output)?;
             report(&project, print)
         }
         Verb::Edit { project, script, output, print } => {
+            files::check_ending(&output, "purl", "projects")?;
             let text = String::from_utf8(files::read(&script)?)
                 .with_context(|| format!("{} is not text", script.display()))?;
             let project = new::perform(Project::open(&project)?, &text)
@@ -312,6 +314,7 @@ fn run(arguments: Arguments) -> Result<()> {
             report(&project, print)
         }
         Verb::Relax { project, output, stage, free, print } => {
+            files::check_ending(&output, "purl", "projects")?;
             let opened = Project::open(&project)?;
             let relaxed = match stage {
                 RelaxStage::Mesh => simulate::relax_stitches(&opened, !free),
@@ -322,6 +325,8 @@ fn run(arguments: Arguments) -> Result<()> {
             report(&project, print)
         }
         Verb::Simulate { project, output, scene, seconds, solver, frames, print } => {
+            // Before the work, not after it.
+            files::check_ending(&output, "purl", "projects")?;
             let opened = Project::open(&project)?;
             let project = simulate::simulate(opened, scene.as_deref(), seconds, solver, frames.as_deref())
                 .with_context(|| project.display().to_string())?;

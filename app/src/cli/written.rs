@@ -109,6 +109,7 @@ fn said(facts: &SwatchFacts) -> String {
 /// Knits a swatch, or one of every pattern in a folder.
 pub fn swatches(pattern: &Path, size: &Extent, output: &Path, print: Output) -> Result<()> {
     if !pattern.is_dir() {
+        files::check_ending(output, "purl", "projects")?;
         let (project, facts) = knitted(pattern, size)?;
         project.save(output)?;
         print.print(&serde_json::to_value(&facts)?, &said(&facts));
@@ -150,6 +151,7 @@ pub fn swatches(pattern: &Path, size: &Extent, output: &Path, print: Output) -> 
 
 /// Tiles a pattern over a project.
 pub fn tile(project: &Path, pattern: &Path, place: Where, output: &Path, print: Output) -> Result<()> {
+    files::check_ending(output, "purl", "projects")?;
     let text = read(pattern)?;
     let mut document = Document::new(Project::open(project)?);
     let Where { rows, faces, layout } = place;

@@ -3,7 +3,7 @@
 
 use super::actions;
 use super::editor::Editor;
-use super::pointer::{Tool, modifiers_of_click, paint_over, stroke};
+use super::pointer::{Tool, holds, modifiers_of_click, paint_over, stroke};
 use super::request::Request;
 use super::selection::{Change, Mode, Picked};
 use crate::drawing::Stage;
@@ -244,7 +244,7 @@ fn use_mouse(
     over: Vec<FaceId>,
     in_box: bool,
 ) {
-    let held = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
+    let held = holds(ui, response);
     let faces: Vec<FaceId> = match editor.selection().mode {
         Mode::Row => over.into_iter().flat_map(|face| editor.surface().row(face)).collect(),
         _ => over,

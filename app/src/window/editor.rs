@@ -239,7 +239,7 @@ impl Editor {
             surgery: s.surgery.clone(),
             state: Arc::new(s.state.clone()),
         });
-        self.session.send(request, yarn);
+        self.session.send(request, yarn, self.view.opened);
     }
 
     pub(super) fn act(&mut self, command: Command) {

@@ -15,6 +15,9 @@ impl Editor {
             if view.opened != self.view.opened {
                 let kept = std::mem::replace(&mut self.panel, panels::State::of(&view));
                 (self.panel.aspect, self.panel.lab) = (kept.aspect, kept.lab);
+                // Files of the document before are not this one's, and what was asked about it is settled.
+                self.written.clear();
+                (self.replacing, self.leaving) = (None, None);
             } else if view.path != self.view.path {
                 self.panel.path = panels::path_text(&view);
             }

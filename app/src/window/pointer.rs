@@ -81,7 +81,7 @@ fn work(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect) {
     }
     let hit = pick(&editor.faces, ray).or_else(|| {
         // An edge on the border is pointed at from outside, too.
-        let is_edge = editor.selection().mode == Mode::Edge;
+        let is_edge = editor.selection().mode == Mode::Edge && editor.tool == Tool::Select;
         let around = (0..8).map(|i| Vec2::from_angle(std::f32::consts::TAU * i as f32 / 8.0) * BESIDE);
         let mut rays = around.map(|off| editor.camera.ray(Vec2::new(local.x, local.y) + off, size));
         is_edge.then(|| rays.find_map(|ray| pick(&editor.faces, ray)))?
@@ -209,7 +209,7 @@ fn covered(editor: &Editor, visible: &Visible, inside: impl Fn(Vec2) -> bool) ->
 }
 
 fn paint(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect, at: Pos2, modifiers: Modifiers) {
-    let held = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
+    let held = holds(ui, response);
     if !held && !response.clicked() {
         return;
     }
@@ -232,11 +232,20 @@ fn paint(editor: &mut Editor, ui: &Ui, response: &Response, rect: Rect, at: Pos2
     paint_over(editor, faces, at, held, response.clicked());
 }
 
+/// Whether the button is held on something, or has been until this frame.
+pub(super) fn holds(ui: &Ui, response: &Response) -> bool {
+    let is_down = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down());
+    is_down || response.drag_stopped_by(PointerButton::Primary)
+}
+
 /// Where the pointer has been since the stroke's last frame: it is told of places with gaps between them, and a frame may take a while.
 pub(super) fn stroke(editor: &Editor, ui: &Ui, at: Pos2) -> Vec<Pos2> {
     /// From place to place of a stroke [px].
     const STEP: f32 = 3.0;
-    let Some(Gesture::Paint(PaintStroke { last, .. })) = editor.gesture else { return vec![at] };
+    let last = match &editor.gesture {
+        Some(Gesture::Paint(stroke)) => stroke.last,
+        _ => ui.input(|input| input.pointer.press_origin()).unwrap_or(at),
+    };
     let moved = |event: &egui::Event| match event {
         egui::Event::PointerMoved(to) => Some(*to),
         _ => None,

@@ -18,7 +18,7 @@ use crate::open::open_any;
 use crate::project::Project;
 use crate::scenes;
 use crate::written::{tiled, told};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use glam::Vec3;
 use sim_core::mesh_relax::{MeshRelaxation, StepFacts};
 use std::ops::ControlFlow;
@@ -64,13 +64,21 @@ pub struct Preview {
 
 /// A running session. Dropping it lets the thread finish what it was asked and end.
 pub struct Session {
-    requests: Sender<(Request, Option<Moved>)>,
+    requests: Sender<Asked>,
     latest: Arc<Mutex<(Arc<View>, Arc<Survey>)>>,
     waiting: Arc<AtomicUsize>,
     work: Arc<Mutex<Option<Work>>>,
     /// The revision that the window has shown.
     shown: Arc<AtomicU64>,
     thread: Thread,
+}
+
+/// What the window has asked for.
+struct Asked {
+    request: Request,
+    yarn: Option<Moved>,
+    /// The document that it was looking at.
+    opened: u64,
 }
 
 /// Asks for another frame.
@@ -87,7 +95,7 @@ impl Session {
     /// # Errors
     /// The system has no thread to give.
     pub fn spawn(project: Project, path: Option<PathBuf>, wake: Wake) -> std::io::Result<Self> {
-        let (requests, received) = channel::<(Request, Option<Moved>)>();
+        let (requests, received) = channel::<Asked>();
         let work = Arc::new(Mutex::new(None));
         let mut worker = Worker {
             document: Document::new(project),
@@ -99,6 +107,7 @@ impl Session {
             work: Arc::clone(&work),
             latest: None,
             wake: Arc::clone(&wake),
+            is_as_before: false,
         };
         let view = worker.view(Ok(String::new()));
         let survey = Arc::new(Survey::of(&view));
@@ -108,8 +117,8 @@ impl Session {
         let shown = Arc::new(AtomicU64::new(0));
         let seen = Arc::clone(&shown);
         let document = std::thread::Builder::new().name("document".to_owned()).spawn(move || {
-            for (request, yarn) in received {
-                let view = worker.carry_out(request, yarn);
+            for asked in received {
+                let view = worker.carry_out(asked);
                 lock(&slot).0 = Arc::clone(&view);
                 *lock(&work_slot) = None;
                 wake();
@@ -142,11 +151,12 @@ impl Session {
         }
     }
 
-    /// Asks for something. `yarn` is where the simulation has brought the yarn, if it is running.
-    pub fn send(&self, request: Request, yarn: Option<Moved>) {
+    /// Asks for something. `yarn` is where the simulation has brought the yarn, if it is running, and `opened` says which document is
+    /// meant, as in [`View`].
+    pub fn send(&self, request: Request, yarn: Option<Moved>, opened: u64) {
         self.waiting.fetch_add(1, Ordering::Release);
         // The thread ends only when this sender is dropped.
-        let _ = self.requests.send((request, yarn));
+        let _ = self.requests.send(Asked { request, yarn, opened });
         self.thread.unpark();
     }
 
@@ -158,7 +168,8 @@ impl Session {
             let dialog = rfd::FileDialog::new().add_filter("Projects and meshes", &["purl", "obj"]);
             let chosen = dialog.pick_file().map_or(Request::Say(NOTHING_CHOSEN), Request::Open);
             waiting.fetch_add(1, Ordering::Release);
-            let _ = requests.send((chosen, None));
+            // Neither of them is about a certain document.
+            let _ = requests.send(Asked { request: chosen, yarn: None, opened: 0 });
             thread.unpark();
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(ask) {
@@ -200,10 +211,12 @@ struct Worker {
     work: Arc<Mutex<Option<Work>>>,
     latest: Option<Arc<View>>,
     wake: Wake,
+    /// Whether the last command has left everything as it was.
+    is_as_before: bool,
 }
 
 impl Worker {
-    fn carry_out(&mut self, request: Request, yarn: Option<Moved>) -> Arc<View> {
+    fn carry_out(&mut self, Asked { request, yarn, opened }: Asked) -> Arc<View> {
         let (name, since) = (request.doing(), Instant::now());
         *lock(&self.work) = Some(Work { name, since, preview: None, cancelled: Arc::default() });
         if let Some(yarn) = yarn {
@@ -212,10 +225,16 @@ impl Worker {
         let resets = |document: &Document| document.done().filter(|c| **c == Command::ResetYarn).count();
         let before = resets(&self.document);
         let changes = request.changes();
-        let message = self.try_to(request).map_err(|e| format!("{e:#}"));
+        let is_of_another = request.writes().is_some() && opened != self.standing.opened;
+        let done = match is_of_another {
+            true => Err(anyhow!("another document was opened meanwhile, so nothing was written")),
+            false => self.try_to(request),
+        };
+        let message = done.map_err(|e| format!("{e:#}"));
         // Laid anew, or that taken back: the document has put the yarn somewhere itself.
         self.standing.placed += u64::from(resets(&self.document) != before);
-        self.standing.is_changed |= changes && message.is_ok();
+        let is_another = !std::mem::take(&mut self.is_as_before);
+        self.standing.is_changed |= changes && message.is_ok() && is_another;
         self.standing.revision += 1;
         self.view(message)
     }
@@ -311,15 +330,18 @@ impl Worker {
             wake();
             ControlFlow::Continue(())
         };
-        let after = self.unless_cancelled(move || doing.perform(&before, &mut watch))?;
+        let after = self.unless_cancelled(move || doing.perform(&before, &mut watch)).inspect_err(|_| {
+            // What was to go on with it begins a step of its own.
+            self.document.close_step();
+        })?;
         let mut name = command.name();
         if let Command::Tile { text, rows, faces, layout } = &command {
             // What did not fit is not an error, but nobody would guess it.
             let tiled = tiled(self.document.project(), text, *rows, faces.as_deref(), *layout)?;
             name = std::iter::once(name).chain(tiled.left_out).collect::<Vec<_>>().join(" · ");
         }
-        self.document.keep(command, after, amends);
-        Ok(name)
+        self.is_as_before = !self.document.keep(command, after, amends);
+        Ok(if self.is_as_before { format!("{name}: it is so already") } else { name })
     }
 
     /// What `work` comes to, unless somebody cancels it first.

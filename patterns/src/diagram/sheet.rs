@@ -139,8 +139,9 @@ impl Diagram {
             let (wide, marks) = (crossing.columns.len(), glyph::of_crossing(crossing));
             add(Entry { wide, marks, ink: Ink::White, name: crossing.name() });
         }
-        let dyes: BTreeSet<Dye> = self.cells().map(|(_, cell)| cell.dye).collect();
-        if dyes.len() > 1 {
+        let stitches = self.cells().filter(|(_, cell)| cell.stitch.is_some());
+        let dyes: BTreeSet<Dye> = stitches.map(|(_, cell)| cell.dye).collect();
+        if dyes.iter().any(|dye| *dye != Dye::UNDYED) {
             for dye in dyes {
                 let ink = if dye == Dye::UNDYED { Ink::White } else { Ink::Yarn(dye.0) };
                 let name = if dye == Dye::UNDYED { "undyed yarn".into() } else { format!("yarn {dye}") };

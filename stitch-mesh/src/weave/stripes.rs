@@ -79,7 +79,12 @@ impl FromStr for Stripes {
             let count = number.ok_or_else(|| StripesError::Count(count.trim().to_owned()))?;
             Ok((dye.trim().parse()?, count))
         };
-        text.split(',').map(stripe).collect::<Result<_, _>>().map(Self)
+        let mut stripes: Vec<(Dye, u32)> =
+            text.split(',').map(stripe).collect::<Result<_, StripesError>>()?;
+        if let [(_, count)] = &mut stripes[..] {
+            *count = 1; // however many, they are followed by more of the same
+        }
+        Ok(Self(stripes))
     }
 }
 
@@ -110,6 +115,7 @@ mod tests {
         assert_eq!(stripes.to_string().parse(), Ok(stripes));
         let plain = Stripes::from(red);
         assert_eq!((plain.at(7), plain.to_string().as_str()), (red, "#c04030"));
+        assert_eq!("#c04030*4".parse(), Ok(plain));
         assert_eq!(Stripes::default().at(3), Dye::UNDYED);
         for wrong in ["", "red", "#c04030*0", "#c04030*x", "#c04030,", "#c04030*9999999"] {
             assert!(wrong.parse::<Stripes>().is_err(), "{wrong}");
